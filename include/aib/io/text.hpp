@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/core/error.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace aib::io {
+
+/// The text without blanks and line ends at both sides.
+[[nodiscard]] inline std::string_view trim(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// The fields of a line: parted by `separator`, or by runs of blanks where it is 0. Fields are
+/// trimmed.
+inline void split(std::string_view line,
+                  std::vector<std::string_view>& fields,
+                  char separator = 0) {
+  fields.clear();
+  if (separator == 0) {
+    constexpr std::string_view blank = " \t\r\n\v\f";
+    for (std::size_t at = line.find_first_not_of(blank); at != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(blank, at), line.size());
+      fields.push_back(line.substr(at, end - at));
+      at = line.find_first_not_of(blank, end);
+    }
+    return;
+  }
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trim(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// The number that the whole text is, in no locale; nothing where it is not one. "nan" and "inf"
+/// are numbers, a leading + is allowed.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number value{};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
+  if (code != std::errc()) return std::nullopt;
+  return value;
+}
+
+/// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
+/// skipped.
+class line_reader {
+ public:
+  line_reader(std::string_view text, std::filesystem::path path)
+      : rest_(text), path_(std::move(path)) {
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  }
+
+  /// Moves to the next line; false after the last.
+  bool next() {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line_ = rest_.substr(0, end);
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++number_;
+    return true;
+  }
+
+  /// Moves to the next line that is neither blank nor a comment ('#').
+  bool next_content() {
+    while (next()) {
+      const std::string_view content = trim(line_);
+      if (!content.empty() && content.front() != '#') return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::string_view line() const { return line_; }
+  [[nodiscard]] std::size_t number() const { return number_; }
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, at_line{number_}, what);
+  }
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  std::size_t number_ = 0;
+  std::filesystem::path path_;
+};
+
+}  // namespace aib::io
