@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/core/isa.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+/// Eight floats and four doubles that are calculated together, for the few loops where that pays.
+///
+/// The same bits on every machine: each operation is the IEEE one on each lane, nothing is
+/// contracted. `min(a, b)` and `max(a, b)` give `b` where the lanes are unordered. `less(a, b)` has
+/// bit i set where a < b in lane i. `choose(a, b, x, y)` is x where a < b, else y.
+/// `load` and `store` need no alignment.
+namespace aib {
+inline namespace AIB_ISA {
+
+#if !defined(AIB_PLAIN) && defined(__AVX2__)
+
+struct f32x8 {
+  static constexpr std::size_t width = 8;
+  __m256 v;
+
+  static f32x8 load(const float* p) { return {_mm256_loadu_ps(p)}; }
+  static f32x8 broadcast(float x) { return {_mm256_set1_ps(x)}; }
+  void store(float* p) const { _mm256_storeu_ps(p, v); }
+
+  friend f32x8 operator+(f32x8 a, f32x8 b) { return {_mm256_add_ps(a.v, b.v)}; }
+  friend f32x8 operator-(f32x8 a, f32x8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+  friend f32x8 operator*(f32x8 a, f32x8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+  friend f32x8 operator/(f32x8 a, f32x8 b) { return {_mm256_div_ps(a.v, b.v)}; }
+  friend f32x8 sqrt(f32x8 a) { return {_mm256_sqrt_ps(a.v)}; }
+  friend f32x8 min(f32x8 a, f32x8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+  friend f32x8 max(f32x8 a, f32x8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+  friend unsigned less(f32x8 a, f32x8 b) {
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)));
+  }
+  friend f32x8 choose(f32x8 a, f32x8 b, f32x8 x, f32x8 y) {
+    return {_mm256_blendv_ps(y.v, x.v, _mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ))};
+  }
+};
+
+struct f64x4 {
+  static constexpr std::size_t width = 4;
+  __m256d v;
+
+  static f64x4 load(const double* p) { return {_mm256_loadu_pd(p)}; }
+  static f64x4 broadcast(double x) { return {_mm256_set1_pd(x)}; }
+  void store(double* p) const { _mm256_storeu_pd(p, v); }
+
+  friend f64x4 operator+(f64x4 a, f64x4 b) { return {_mm256_add_pd(a.v, b.v)}; }
+  friend f64x4 operator-(f64x4 a, f64x4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
+  friend f64x4 operator*(f64x4 a, f64x4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+  friend f64x4 operator/(f64x4 a, f64x4 b) { return {_mm256_div_pd(a.v, b.v)}; }
+  friend f64x4 sqrt(f64x4 a) { return {_mm256_sqrt_pd(a.v)}; }
+  friend f64x4 min(f64x4 a, f64x4 b) { return {_mm256_min_pd(a.v, b.v)}; }
+  friend f64x4 max(f64x4 a, f64x4 b) { return {_mm256_max_pd(a.v, b.v)}; }
+  friend unsigned less(f64x4 a, f64x4 b) {
+    return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)));
+  }
+  friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
+    return {_mm256_blendv_pd(y.v, x.v, _mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ))};
+  }
+};
+
+#elif !defined(AIB_PLAIN) && defined(__SSE2__)
+
+struct f32x8 {
+  static constexpr std::size_t width = 8;
+  __m128 lo, hi;
+
+  static f32x8 load(const float* p) { return {_mm_loadu_ps(p), _mm_loadu_ps(p + 4)}; }
+  static f32x8 broadcast(float x) { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
+  void store(float* p) const {
+    _mm_storeu_ps(p, lo);
+    _mm_storeu_ps(p + 4, hi);
+  }
+
+  friend f32x8 operator+(f32x8 a, f32x8 b) {
+    return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)};
+  }
+  friend f32x8 operator-(f32x8 a, f32x8 b) {
+    return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)};
+  }
+  friend f32x8 operator*(f32x8 a, f32x8 b) {
+    return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)};
+  }
+  friend f32x8 operator/(f32x8 a, f32x8 b) {
+    return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)};
+  }
+  friend f32x8 sqrt(f32x8 a) { return {_mm_sqrt_ps(a.lo), _mm_sqrt_ps(a.hi)}; }
+  friend f32x8 min(f32x8 a, f32x8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
+  friend f32x8 max(f32x8 a, f32x8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
+  friend unsigned less(f32x8 a, f32x8 b) {
+    const int low = _mm_movemask_ps(_mm_cmplt_ps(a.lo, b.lo));
+    const int high = _mm_movemask_ps(_mm_cmplt_ps(a.hi, b.hi));
+    return static_cast<unsigned>(low | high << 4);
+  }
+  friend f32x8 choose(f32x8 a, f32x8 b, f32x8 x, f32x8 y) {
+    const auto half = [](__m128 mask, __m128 yes, __m128 no) {
+      return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
+    };
+    return {half(_mm_cmplt_ps(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_ps(a.hi, b.hi), x.hi, y.hi)};
+  }
+};
+
+struct f64x4 {
+  static constexpr std::size_t width = 4;
+  __m128d lo, hi;
+
+  static f64x4 load(const double* p) { return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)}; }
+  static f64x4 broadcast(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
+  void store(double* p) const {
+    _mm_storeu_pd(p, lo);
+    _mm_storeu_pd(p + 2, hi);
+  }
+
+  friend f64x4 operator+(f64x4 a, f64x4 b) {
+    return {_mm_add_pd(a.lo, b.lo), _mm_add_pd(a.hi, b.hi)};
+  }
+  friend f64x4 operator-(f64x4 a, f64x4 b) {
+    return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)};
+  }
+  friend f64x4 operator*(f64x4 a, f64x4 b) {
+    return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)};
+  }
+  friend f64x4 operator/(f64x4 a, f64x4 b) {
+    return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)};
+  }
+  friend f64x4 sqrt(f64x4 a) { return {_mm_sqrt_pd(a.lo), _mm_sqrt_pd(a.hi)}; }
+  friend f64x4 min(f64x4 a, f64x4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
+  friend f64x4 max(f64x4 a, f64x4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
+  friend unsigned less(f64x4 a, f64x4 b) {
+    const int low = _mm_movemask_pd(_mm_cmplt_pd(a.lo, b.lo));
+    const int high = _mm_movemask_pd(_mm_cmplt_pd(a.hi, b.hi));
+    return static_cast<unsigned>(low | high << 2);
+  }
+  friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
+    const auto half = [](__m128d mask, __m128d yes, __m128d no) {
+      return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
+    };
+    return {half(_mm_cmplt_pd(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_pd(a.hi, b.hi), x.hi, y.hi)};
+  }
+};
+
+#else
+
+/// Lanes in plain code, for machines without vector code of their own here.
+template <class Scalar, std::size_t Width>
+struct plain_lanes {
+  static constexpr std::size_t width = Width;
+  Scalar v[Width];
+
+  static plain_lanes load(const Scalar* p) {
+    plain_lanes out;
+    std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static plain_lanes broadcast(Scalar x) {
+    plain_lanes out;
+    std::fill_n(out.v, Width, x);
+    return out;
+  }
+  void store(Scalar* p) const { std::memcpy(p, v, sizeof v); }
+
+  template <class Op>
+  static plain_lanes each(const plain_lanes& a, const plain_lanes& b, Op op) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = op(a.v[i], b.v[i]);
+    return out;
+  }
+  friend plain_lanes operator+(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x + y; });
+  }
+  friend plain_lanes operator-(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x - y; });
+  }
+  friend plain_lanes operator*(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x * y; });
+  }
+  friend plain_lanes operator/(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x / y; });
+  }
+  friend plain_lanes sqrt(const plain_lanes& a) {
+    return each(a, a, [](Scalar x, Scalar) { return std::sqrt(x); });
+  }
+  friend plain_lanes min(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x < y ? x : y; });
+  }
+  friend plain_lanes max(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x > y ? x : y; });
+  }
+  friend unsigned less(const plain_lanes& a, const plain_lanes& b) {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < Width; ++i) bits |= static_cast<unsigned>(a.v[i] < b.v[i]) << i;
+    return bits;
+  }
+  friend plain_lanes choose(const plain_lanes& a,
+                            const plain_lanes& b,
+                            const plain_lanes& x,
+                            const plain_lanes& y) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = a.v[i] < b.v[i] ? x.v[i] : y.v[i];
+    return out;
+  }
+};
+
+using f32x8 = plain_lanes<float, 8>;
+using f64x4 = plain_lanes<double, 4>;
+
+#endif
+
+/// The smallest and the largest of the lanes; no lane is NaN.
+inline float lowest(f32x8 a) {
+  float lane[8];
+  a.store(lane);
+  return *std::min_element(lane, lane + 8);
+}
+inline float highest(f32x8 a) {
+  float lane[8];
+  a.store(lane);
+  return *std::max_element(lane, lane + 8);
+}
+
+/// Sum of the lanes in a fixed order.
+inline double sum(f64x4 a) {
+  double lane[4];
+  a.store(lane);
+  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib

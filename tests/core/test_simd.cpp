@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/core/simd.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace aib;
+
+namespace {
+
+template <class Lanes, class Scalar>
+void check_lanes() {
+  constexpr std::size_t n = Lanes::width;
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  Scalar a[n], b[n], out[n];
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i] = static_cast<Scalar>(i) / 3;
+    b[i] = static_cast<Scalar>(n - i) / 7;
+  }
+  b[1] = nan;
+  const Lanes x = Lanes::load(a);
+  const Lanes y = Lanes::load(b);
+  const auto expect = [&](Lanes found, auto op) {
+    found.store(out);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Scalar wanted = op(a[i], b[i]);
+      CHECK((out[i] == wanted || (std::isnan(out[i]) && std::isnan(wanted))));
+    }
+  };
+  expect(x + y, [](Scalar p, Scalar q) { return p + q; });
+  expect(x - y, [](Scalar p, Scalar q) { return p - q; });
+  expect(x * y, [](Scalar p, Scalar q) { return p * q; });
+  expect(x / y, [](Scalar p, Scalar q) { return p / q; });
+  expect(sqrt(x), [](Scalar p, Scalar) { return std::sqrt(p); });
+  expect(min(x, y), [](Scalar p, Scalar q) { return p < q ? p : q; });
+  expect(max(x, y), [](Scalar p, Scalar q) { return p > q ? p : q; });
+  expect(choose(x, y, x, Lanes::broadcast(5)),
+         [](Scalar p, Scalar q) { return p < q ? p : Scalar{5}; });
+  for (std::size_t i = 0; i < n; ++i) CHECK(((less(x, y) >> i) & 1) == (a[i] < b[i]));
+}
+
+}  // namespace
+
+TEST_CASE("lanes calculate as scalars do, unordered lanes included") {
+  check_lanes<f32x8, float>();
+  check_lanes<f64x4, double>();
+}
+
+TEST_CASE("lanes are folded") {
+  const float a[8] = {3, 1, 4, 1, 5, 9, 2, 6};
+  CHECK(lowest(f32x8::load(a)) == 1);
+  CHECK(highest(f32x8::load(a)) == 9);
+  const double d[4] = {1, 2, 3, 4};
+  CHECK(sum(f64x4::load(d)) == 10);
+}
