@@ -36,6 +36,6 @@ fi
 echo "tests: building for this machine's own instruction set (-Dsimd=native)"
 log=build/meson-logs
 rm -f $log/testlog.json
-[ ${#tests[@]} != 0 ] || ninja -C build || true  # what fails is told below
+[ ${#tests[@]} != 0 ] || ninja -C build all meson-test-prereq || true  # what fails is told below
 meson test -C build --timeout-multiplier 3 "${tests[@]}" >$log/run.txt 2>&1 || true
 python3 tests/support/summary.py $log "${summary[@]}"
