@@ -7,6 +7,9 @@ import sys
 
 
 def main(*reports):
+    if not reports:
+        print("SKIPPED: headers alone: the compiler is not here")
+        return 77
     texts = [pathlib.Path(report).read_text() for report in reports]
     skips = sorted({text for text in texts if text.startswith("SKIPPED")})
     faults = [text for text in texts if text and text not in skips]
