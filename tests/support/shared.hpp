@@ -16,7 +16,7 @@ inline std::filesystem::path shared() { return AIB_SHARED; }
 /// counts and lists these lines.
 inline bool has_shared(const char* test) {
   if (std::filesystem::exists(shared() / "golden" / "manifest.json")) return true;
-  MESSAGE(std::string("SKIPPED: ") + test + ": the shared folder is not here");
+  MESSAGE((std::string("SKIPPED: ") + test + ": the shared folder is not here"));
   return false;
 }
 

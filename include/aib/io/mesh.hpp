@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/core/error.hpp>
+#include <aib/io/axes.hpp>
+#include <aib/io/file_kind.hpp>
+#include <aib/io/ply.hpp>
+#include <aib/io/ply_write.hpp>
+#include <aib/mesh/mesh.hpp>
+
+#include <filesystem>
+
+namespace aib::io {
+
+struct mesh_options {
+  up_axis up = up_axis::z;  ///< axis that points up in the file
+};
+
+/// Reads a mesh; the format is told from the content, then from the extension.
+///
+/// Throws format_error where the format is not known or the file is damaged, io_error where it
+/// cannot be read.
+inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options = {}) {
+  mesh::mesh result;
+  switch (kind_of(path)) {
+    case file_kind::ply:
+      result = read_ply_mesh(path);
+      break;
+    default:
+      throw format_error(path, "a mesh expected: PLY");
+  }
+  turn_z_up(result, options.up);
+  return result;
+}
+
+/// Writes a mesh as PLY. Throws argument_error for another extension.
+inline void write_mesh(const std::filesystem::path& path,
+                       const mesh::mesh& mesh,
+                       const ply_mesh_extras& extras = {}) {
+  if (extension_of(path) != ".ply") {
+    throw argument_error(message("io::write_mesh: the extension .ply expected, found \"",
+                                 path.extension().string(), "\""));
+  }
+  write_ply(path, mesh, extras);
+}
+
+}  // namespace aib::io
