@@ -144,7 +144,8 @@ configure() {  # configure HAS_NEWS -Doption=value ...
     return
   fi
   echo "setup: configuring build/ again with $*"
-  quietly meson configure build --clearcache  # what was missing before is looked for again
+  # Meson remembers what it did not find. Without its memory it looks again, with the same options.
+  [ "$has_news" = no ] || : >build/meson-private/coredata.dat
   quietly meson setup build --reconfigure "$@"
 }
 
