@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// The whole library.
+
+#include <aib/core.hpp>
+#include <aib/math.hpp>
+#include <aib/stats.hpp>
+#include <aib/raster.hpp>
+#include <aib/depth.hpp>
+#include <aib/pose.hpp>
+#include <aib/cloud.hpp>
+#include <aib/mesh.hpp>
+#include <aib/io.hpp>

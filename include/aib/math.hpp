@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Rotations, transforms, cameras.
+
+#include <aib/math/camera.hpp>
+#include <aib/math/rigid3.hpp>
+#include <aib/math/rotation.hpp>
+#include <aib/math/sim3.hpp>

@@ -1,0 +1,8 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Triangle meshes and distances to them.
+
+#include <aib/mesh/mesh.hpp>

@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Images and views of images.
+
+#include <aib/raster/downsample.hpp>
+#include <aib/raster/image.hpp>
+#include <aib/raster/view.hpp>
