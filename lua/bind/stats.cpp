@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/stats/moments.hpp>
+#include <aib/stats/quantiles.hpp>
+#include <aib/stats/summary.hpp>
+
+#include "kit.hpp"
+#include <string>
+#include <vector>
+
+namespace aib::bind {
+
+namespace {
+
+std::string print(const stats::moments& m) {
+  return message("moments(", m.count(), " values, mean ", m.mean(), ", std ", m.deviation(), ")");
+}
+
+record as_record(lua_State* state, const stats::summary& s) {
+  record r(state);
+  r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
+  r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
+  return r;
+}
+
+void bind_moments(lua_State* state) {
+  type<stats::moments>(state, "moments", print)
+      .length([](const stats::moments& m) { return m.count(); })
+      .field("mean", [](const stats::moments& m) { return m.mean(); })
+      .field("std", [](const stats::moments& m) { return m.deviation(); })
+      .field("min", [](const stats::moments& m) { return m.min(); })
+      .field("max", [](const stats::moments& m) { return m.max(); })
+      .method("add", {"value"},
+              [](stats::moments& m, double value) {
+                m.add(value);
+                return self{};
+              })
+      .method("merge", {"other"}, [](stats::moments& m, const stats::moments& other) {
+        m += other;
+        return self{};
+      });
+}
+
+}  // namespace
+
+void bind_stats(lua_State* state) {
+  bind_moments(state);
+  module(state, "stats")
+      .function("moments", {}, [] { return stats::moments(); })
+      .function("summary", {"values"},
+                [](lua_State* l, const std::vector<double>& values) {
+                  return as_record(l, stats::summarize(values));
+                })
+      .function("quantile", {"values", "q", "options"},
+                [](std::vector<double> values, double q, options& o) {
+                  using enum stats::quantile_rule;
+                  const auto rule =
+                      o.choice("rule", linear,
+                               {{"linear", linear}, {"lower", lower}, {"midpoint", midpoint}});
+                  o.done();
+                  return stats::quantile_in_place<double>(values, q, rule);
+                });
+}
+
+}  // namespace aib::bind
