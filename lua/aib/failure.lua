@@ -1,0 +1,25 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- Errors with a kind, as the library raises them: "argument", "format", "io", "undefined", "stopped", "internal", or
+--- "script" for errors of Lua code.
+local aib = require "aib"
+
+local M = {}
+
+--- Raises an error of the kind. Its text carries no script position: it is meant for the one who runs the script.
+function M.raise(kind, text)
+  aib.system.remember(kind, text)
+  error(text, 0)
+end
+
+--- The kind of an error value that was caught.
+function M.kind(caught) return aib.error_kind(tostring(caught)) end
+
+--- The text of an error value without the script position in front of it.
+function M.message(caught)
+  local text = tostring(caught)
+  return text:match("^[^\n:]+%.lua:%d+: (.*)") or text:match('^%[string "[^"\n]*"%]:%d+: (.*)') or text
+end
+
+return M
