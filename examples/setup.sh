@@ -164,4 +164,4 @@ if [ ${#missing[@]} != 0 ]; then
   install "${missing[@]}"
   has_news=yes
 fi
-[ "${1:-}" = --only-packages ] || configure "$has_news" -Dsimd=native "$@"
+[ "${1:-}" = --only-packages ] || configure "$has_news" -Dsimd=native -Dlua=enabled "$@"
