@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "bind/aib.hpp"
 #include "bind/kit.hpp"
+#include "shell/embedded.hpp"
 #include <cstdio>
 #include <string>
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   session.attach(lua.lua_state());
   lua.open_libraries();
   aib::bind::bind_all(lua.lua_state());
+  aib::shell::serve_embedded_modules(lua.lua_state());
   if (argc < 2) return 2;
   const auto result = std::string(argv[1]) == "-e" && argc > 2
                           ? lua.safe_script(argv[2], sol::script_pass_on_error, "=(command line)")

@@ -15,6 +15,7 @@
 #include "kit/guard.hpp"
 #include "kit/module.hpp"
 #include "kit/options.hpp"
+#include "kit/point.hpp"
 #include "kit/record.hpp"
 #include "kit/session.hpp"
 #include "kit/suggest.hpp"

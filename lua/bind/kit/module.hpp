@@ -37,6 +37,9 @@ class module {
     return *this;
   }
 
+  /// A member that is `require "aib.module.name"`, loaded when it is first asked for.
+  module& lazy(const char* name);
+
   const sol::table& table() const { return table_; }
 
  private:

@@ -188,6 +188,7 @@ struct value<std::vector<T>> {
   static std::string expected() { return "list of " + value<T>::expected() + "s"; }
   static bool is(lua_State* state, int index) {
     if (!lua_istable(state, index)) return false;
+    index = lua_absindex(state, index);
     const auto n = static_cast<lua_Integer>(lua_rawlen(state, index));
     for (lua_Integer i = 1; i <= n; ++i) {
       lua_rawgeti(state, index, i);
@@ -198,6 +199,7 @@ struct value<std::vector<T>> {
     return true;
   }
   static std::vector<T> get(lua_State* state, int index) {
+    index = lua_absindex(state, index);
     const auto n = static_cast<lua_Integer>(lua_rawlen(state, index));
     std::vector<T> list;
     list.reserve(static_cast<std::size_t>(n));
