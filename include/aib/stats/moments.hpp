@@ -14,6 +14,16 @@ namespace aib::stats {
 /// "Updating formulae and a pairwise algorithm for computing sample variances", 1979.
 class moments {
  public:
+  /// The moments of values that were summed elsewhere: `squares` is the sum of squared deviations
+  /// from `mean`. The range is not known and stays empty.
+  [[nodiscard]] static moments from(std::uint64_t count, double mean, double squares) {
+    moments m;
+    m.count_ = count;
+    m.mean_ = mean;
+    m.squares_ = squares;
+    return m;
+  }
+
   void add(double value) {
     ++count_;
     const double delta = value - mean_;
