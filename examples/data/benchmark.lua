@@ -26,7 +26,10 @@ end
 
 local colmap = everywhere(function(folder)
   local dense = "methods/sgbm_colmap/" .. folder
-  return { models = "methods/colmap/" .. folder .. "/sparse", depth = dense .. "/depth/{stem}.exr", cloud = dense .. "/fused.ply" }
+  return {
+    models = "methods/colmap/" .. folder .. "/sparse", depth = dense .. "/depth/{stem}.exr",
+    cloud = dense .. "/fused.ply",
+  }
 end)
 colmap[2].depth, colmap[2].cloud = nil, nil  -- the dense step was not run on the nearly clean office
 

@@ -4,8 +4,8 @@
 --- A benchmark folder: its benchmark.lua is a data file, run without globals, that returns
 ---
 ---   name, cite, licence   texts
----   scenes    list of { name =, conditions = list of names|nil, poses =, cameras =, depth =, mesh =, points =, crop = },
----             see aib.scene
+---   scenes    list of { name =, conditions = list of names|nil, poses =, cameras =, depth =, mesh =, points =,
+---             crop = }, see aib.scene
 ---   methods   list of { name =, parameters = "estimated" | "ground truth", results = list }; a result is
 ---     scene, condition   which of them it is of
 ---     models      folder of COLMAP or GLOMAP models (0, 1, ...), or
@@ -24,7 +24,9 @@ local suggest = require "aib.suggest"
 
 local M = {}
 
-local benchmark_fields <const> = { name = "string", cite = "string", licence = "string", scenes = "table", methods = "table" }
+local benchmark_fields <const> = {
+  name = "string", cite = "string", licence = "string", scenes = "table", methods = "table",
+}
 local scene_fields <const> = {
   name = "string", conditions = "table", poses = "string", cameras = "any", depth = "string", mesh = "string",
   points = "string", crop = "table", labels = "string", names = "any", samples = "number",
@@ -134,8 +136,8 @@ local function units_of(benchmark)
   return units
 end
 
---- Opens a benchmark folder: { name =, scenes =, methods =, units =, files = }. Raises an io or format error, a sentence
---- with the place, where it is not one.
+--- Opens a benchmark folder: { name =, scenes =, methods =, units =, files = }. Raises an io or format error, a
+--- sentence with the place, where it is not one.
 function M.open(folder)
   local files = aib.files.new(folder)
   local path = files:path("benchmark.lua")

@@ -63,7 +63,9 @@ function parser:option(name, value)
     self.call.inputs[negated] = false
     return
   end
-  if not input then wrong(("unknown option '--%s'%s"):format(name, suggest.hint("--" .. name, option_names(self.protocol)))) end
+  if not input then
+    wrong(("unknown option '--%s'%s"):format(name, suggest.hint("--" .. name, option_names(self.protocol))))
+  end
   if input.kind == "flag" and not value then value = "true" end
   give(self.call.inputs, input, inputs.parse(input, value or self:next_value(name), wrong))
 end

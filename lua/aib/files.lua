@@ -53,7 +53,8 @@ function M.expand(pattern, image)
   return (pattern:gsub("{(%a+)}", values))
 end
 
---- Those of `images` (a list of names) for which a pattern names a file that is there. Raises an io error where none is.
+--- Those of `images` (a list of names) for which a pattern names a file that is there. Raises an io error where there
+--- is none.
 function files:present(pattern, images)
   local list = {}
   for _, image in ipairs(images) do

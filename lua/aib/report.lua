@@ -77,13 +77,16 @@ local function check_options(name, options, level)
   end
 end
 
---- The result of a function, or nil and the reason where what it computes is undefined (no valid pixel, no pair).
---- Other errors pass.
-function report:attempt(compute)
-  local results = table.pack(pcall(compute))
-  if results[1] then return table.unpack(results, 2, results.n) end
-  if failure.kind(results[2]) ~= "undefined" then error(results[2], 0) end
-  return nil, failure.message(results[2])
+--- The result of a function, or nil and the reason where what it computes is undefined (no valid pixel, no pair);
+--- `what` is noted then. Other errors pass.
+---   local errors = report:attempt(function() return aib.depth.errors(est, ref) end, "depth")
+function report:attempt(compute, what)
+  local ok, result = pcall(compute)
+  if ok then return result end
+  if failure.kind(result) ~= "undefined" then error(result, 0) end
+  local reason = failure.message(result)
+  if what then self:note(("%s: %s"):format(what, reason)) end
+  return nil, reason
 end
 
 --- Adds a number.
@@ -122,7 +125,7 @@ function report:insert(record)
   list[#list + 1] = record
 end
 
---- Adds a sentence for the reader; the same one is kept once.
+--- Adds a sentence for the reader, under a key or under the name of the group; the same one is kept once.
 function report:note(key, text)
   if text == nil then key, text = self:group_name(), key end
   local id = key .. "\0" .. text

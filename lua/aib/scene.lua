@@ -8,7 +8,8 @@
 ---   names    list of the images expected (default: those of the poses)
 ---   depth    pattern of depth maps, {stem} and {name} stand for the image
 ---   mesh     triangle mesh          points   point cloud        labels   pattern of label images
----   crop     { min = {x, y, z}, max = {x, y, z} }: the part of mesh samples and points that is scored
+---   crop     { min = {x, y, z}, max = {x, y, z} }: the part of space that is scored, in mesh samples, points and
+---            what methods made
 ---
 ---   local scene = aib.scene.open { folder = "office", poses = "transforms.json", depth = "depth/{stem}.exr" }
 ---   for _, name in ipairs(scene.names) do local depth = scene.depth(name) end
@@ -60,9 +61,11 @@ function readers.points(scene)
 end
 
 --- Names of the images that have a depth map.
-function readers.depth_names(scene) return scene.spec.depth and scene.files:present(scene.spec.depth, scene.names) or {} end
+function readers.depth_names(scene)
+  return scene.spec.depth and scene.files:present(scene.spec.depth, scene.names) or {}
+end
 
---- The part of a cloud inside the scene's crop box.
+--- The part of a cloud, in the scene's frame, inside the crop box.
 function M.cropped(scene, cloud)
   local box = scene.spec.crop
   return box and aib.cloud.crop(cloud, box) or cloud

@@ -24,7 +24,9 @@ function M.read(folder)
   for _, name in ipairs(aib.system.names_in(folder)) do
     if name:find("^%d+$") and is_model(folder .. "/" .. name) then numbers[#numbers + 1] = math.tointeger(name) end
   end
-  if #numbers == 0 then failure.raise("io", folder .. ": no COLMAP model (images.bin or images.txt) in it or its folders") end
+  if #numbers == 0 then
+    failure.raise("io", folder .. ": no COLMAP model (images.bin or images.txt) in it or its folders")
+  end
   table.sort(numbers)
   local models = {}
   for i, number in ipairs(numbers) do models[i] = read(folder .. "/" .. number, tostring(number)) end
@@ -35,8 +37,9 @@ end
 function M.largest(models)
   local best
   for _, model in ipairs(models) do
-    local images, points = #model.trajectory, #model.points
-    if not best or images > #best.trajectory or images == #best.trajectory and points > #best.points then best = model end
+    local more = not best or #model.trajectory > #best.trajectory
+    local equal = best and #model.trajectory == #best.trajectory
+    if more or equal and #model.points > #best.points then best = model end
   end
   return best
 end

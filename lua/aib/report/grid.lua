@@ -156,8 +156,8 @@ local function mark_best(records, cells, draw)
   for _, record in pairs(records) do
     if has_value(record) then count = count + 1 end
     if draw.competes(record) then
-      local lower = record.better == "lower"
-      if not best or lower and record.value < best.value or not lower and record.value > best.value then best = record end
+      local sign = record.better == "lower" and 1 or -1
+      if not best or sign * record.value < sign * best.value then best = record end
     end
   end
   if not best or count < 2 then return end
