@@ -30,6 +30,11 @@ const char* name_of(error_kind kind) {
 // Lua copies the extra space of the main thread into every coroutine.
 void session::attach(lua_State* state) { *static_cast<session**>(lua_getextraspace(state)) = this; }
 
+void session::restart() {
+  stop = std::stop_source();
+  control.stop = stop.get_token();
+}
+
 session& session::of(lua_State* state) {
   return **static_cast<session**>(lua_getextraspace(state));
 }

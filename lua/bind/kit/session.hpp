@@ -32,13 +32,16 @@ const char* name_of(error_kind kind);
 /// State of one shell: what all calls share. One for a Lua state; lives longer than it.
 class session {
  public:
-  session() { control.stop = stop.get_token(); }
+  session() { restart(); }
   session(const session&) = delete;
   session& operator=(const session&) = delete;
 
   /// Makes this the session of the state, before anything is bound.
   void attach(lua_State* state);
   static session& of(lua_State* state);
+
+  /// After Ctrl-C: what comes next may run.
+  void restart();
 
   unsigned threads = 0;   ///< for the library's options.threads; 0: all
   std::stop_source stop;  ///< requested by Ctrl-C
