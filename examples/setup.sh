@@ -22,11 +22,10 @@ meson                program meson
 ninja-build          program ninja
 pkg-config           program pkg-config
 libeigen3-dev        module eigen3 3.4
-libnanoflann-dev     module nanoflann
-libtinyexr-dev       header tinyexr.h
 liblua5.4-dev        module lua5.4
 sol2-dev             module sol2 3.3
 zlib1g-dev           module zlib
+libdeflate-dev       module libdeflate
 libspng-dev          module spng
 nlohmann-json3-dev   module nlohmann_json
 libpugixml-dev       module pugixml
@@ -35,6 +34,7 @@ libedit-dev          module libedit
 tests_needs='
 python3              program python3
 doctest-dev          header doctest/doctest.h
+libtinyexr-dev       header tinyexr.h
 '
 ci_needs='
 git                  program git

@@ -40,13 +40,14 @@ FOLDERS = {
     "stream": "drivers over files larger than memory",
 }
 
+# How the includes of an optional library begin, and when it is here.
 OPTIONAL = {
-    "tinyexr.h": "AIB_WITH_EXR",
-    "zlib.h": "AIB_WITH_NPZ",
-    "spng.h": "AIB_WITH_PNG",
-    "nlohmann/": "AIB_WITH_JSON",
-    "pugixml.hpp": "AIB_WITH_XML",
-    "embree": "AIB_WITH_EMBREE",
+    "zlib.h": "defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)",
+    "libdeflate.h": "defined(AIB_WITH_LIBDEFLATE)",
+    "spng.h": "defined(AIB_WITH_PNG)",
+    "nlohmann/": "defined(AIB_WITH_JSON)",
+    "pugixml.hpp": "defined(AIB_WITH_XML)",
+    "embree": "defined(AIB_WITH_EMBREE)",
 }
 
 HEAD = "// SPDX-FileCopyrightText: the aib authors\n// SPDX-License-Identifier: MIT\n"
@@ -54,15 +55,17 @@ INCLUDE_LINE = re.compile(r"\s*#\s*include\s*<(.+?)>")
 
 
 def lines_of(header):
-    """(line, what it includes or None, whether it stands behind an #if) of each line below the head."""
-    depth = 0
+    """(line, what it includes or None, "always", "if" or "else") of each line below the head."""
+    branches = []
     text = (INCLUDE / header).read_text().removeprefix(HEAD).lstrip("\n").removeprefix("#pragma once\n")
     for line in text.splitlines():
-        directive = re.match(r"\s*#\s*(if|ifdef|ifndef|endif)\b", line)
-        if directive:
-            depth += -1 if directive[1] == "endif" else 1
+        directive = re.match(r"\s*#\s*(if|else|endif)", line)
+        if directive and directive[1] != "if":
+            branches.pop()
+        if directive and directive[1] != "endif":
+            branches.append(directive[1])
         include = INCLUDE_LINE.match(line)
-        yield line, include[1] if include else None, depth > 0
+        yield line, include[1] if include else None, branches[-1] if branches else "always"
 
 
 def is_own(included):
@@ -70,21 +73,24 @@ def is_own(included):
 
 
 def guards_of(header, known):
-    """Macros without which the header cannot be compiled, from what it includes whatever is defined."""
+    """Conditions without which the header cannot be compiled, from what it includes in any case. An
+    optional library behind #else is one: the header does not do without it, only otherwise."""
     if header not in known:
         known[header] = set()
-        for _, included, is_conditional in lines_of(header):
-            if included and not is_conditional:
-                if is_own(included):
-                    known[header] |= guards_of(included, known)
-                known[header] |= {m for start, m in OPTIONAL.items() if included.startswith(start)}
+        for _, included, branch in lines_of(header):
+            if not included or branch == "if":
+                continue
+            if is_own(included):
+                known[header] |= guards_of(included, known)
+            known[header] |= {here for start, here in OPTIONAL.items() if included.startswith(start)}
     return known[header]
 
 
 def guarded(text, guards):
     if not guards:
         return text
-    condition = " && ".join(f"defined({guard})" for guard in sorted(guards))
+    alone = len(guards) == 1
+    condition = " && ".join(g if alone or "||" not in g else f"({g})" for g in sorted(guards))
     return f"#if {condition}\n{text}#endif\n"
 
 
@@ -126,11 +132,11 @@ def in_order(header, done):
 def body_of(header, guards, hoisted):
     """The text without own includes; what every build includes is collected in `hoisted` instead."""
     kept = []
-    for line, included, is_conditional in lines_of(header):
+    for line, included, branch in lines_of(header):
         if included and is_own(included):
             continue
         is_optional = included and any(included.startswith(start) for start in OPTIONAL)
-        if included and not is_conditional and not is_optional:
+        if included and branch == "always" and not is_optional:
             hoisted.add(included)
             continue
         kept.append(line)
