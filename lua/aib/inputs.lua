@@ -118,7 +118,7 @@ local function elements(input) return { kind = input.of or "path", unit = input.
 --- The value after the checks of its kind. Calls `wrong(sentence)` where it is not one.
 local function checked(value, input, wrong)
   if type(value) ~= lua_types[input.kind] then
-    wrong(("a %s expected, found %s"):format(input.kind, type(value)))
+    wrong(("%s %s expected, found %s"):format(input.kind:find("^[aeiou]") and "an" or "a", input.kind, type(value)))
   end
   if input.kind == "list" then
     local list = {}

@@ -94,7 +94,7 @@ function reader:fail(expected)
   local _, line = self.text:sub(1, self.at - 1):gsub("\n", "")
   local found = self.text:sub(self.at, self.at)
   error(("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected,
-    found == "" and "the end" or quoted(found)), 0)
+    found == "" and "the end" or "'" .. found .. "'"), 0)
 end
 
 --- Skips blanks, then takes what matches `pattern`, or returns nil.

@@ -125,5 +125,5 @@ return function(report, style)
   for _, grid in ipairs(report:grids()) do add_grid(out, grid, style) end
   add_notes(out, report:note_lines(), style)
   for i, line in ipairs(out) do out[i] = line:gsub("%s+$", "") end
-  return table.concat(out, "\n") .. "\n"
+  return (table.concat(out, "\n"):gsub("\n*$", "\n"))
 end
