@@ -28,6 +28,7 @@ class input_file {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] int descriptor() const { return ::fileno(file_.get()); }
 
   /// Reads exactly `n` bytes at `offset`. Throws format_error where the file ends before.
   void read_at(std::uint64_t offset, void* to, std::size_t n) const;
@@ -90,7 +91,7 @@ inline input_file::input_file(std::filesystem::path path) : path_(std::move(path
 inline void input_file::read_at(std::uint64_t offset, void* to, std::size_t n) const {
   auto* bytes = static_cast<char*>(to);
   while (n > 0) {
-    const ssize_t got = ::pread(::fileno(file_.get()), bytes, n, static_cast<off_t>(offset));
+    const ssize_t got = ::pread(descriptor(), bytes, n, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw io_error(path_, message("cannot read: ", std::strerror(errno)));
     if (got == 0)
