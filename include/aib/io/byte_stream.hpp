@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +33,20 @@ class byte_stream {
     const char* bytes = block_.data() + at_;
     at_ += n;
     return bytes;
+  }
+
+  template <class T>
+  T read_number(std::string_view what, std::endian order = std::endian::little) {
+    return load<T>(take(sizeof(T), what), order);
+  }
+
+  /// Text up to a NUL, which is skipped; at most 255 characters.
+  std::string take_name(std::string_view what) {
+    std::string name;
+    for (char c; (c = *take(1, what)) != '\0'; name += c) {
+      if (name.size() == 255) fail(message(what, ": no end within 255 characters"));
+    }
+    return name;
   }
 
   /// Copies the next `n` bytes to `to`; large pieces go there without a detour.
@@ -77,7 +94,7 @@ class byte_stream {
     const auto wanted = static_cast<std::size_t>(
         std::min<std::uint64_t>(left(), std::max<std::size_t>(n, block_size)));
     const std::size_t kept = filled_ - at_;
-    std::memmove(block_.data(), block_.data() + at_, kept);
+    if (kept > 0) std::memmove(block_.data(), block_.data() + at_, kept);
     move_to(offset());
     if (block_.size() < wanted) block_.resize(wanted);
     file_->read_at(block_offset_ + kept, block_.data() + kept, wanted - kept);
