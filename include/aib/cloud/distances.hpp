@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/cloud/cloud.hpp>
+#include <aib/cloud/positions.hpp>
+#include <aib/core/error.hpp>
+#include <aib/core/executor.hpp>
+#include <aib/search/nearest.hpp>
+#include <aib/stats/quantiles.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace aib::cloud {
+
+/// What becomes of a distance that is not below the maximum.
+enum class beyond_rule {
+  drop,   ///< left out of all statistics but shares (DTU)
+  clamp,  ///< counts as the maximum (CloudCompare)
+};
+
+struct distance_options {
+  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
+  beyond_rule beyond = beyond_rule::drop;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Distances from each point of a cloud to another thing, with their statistics.
+///
+/// Statistics throw undefined_error where no distance counts.
+class distances {
+ public:
+  /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
+  /// brought to one origin in double first.
+  ///
+  /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
+  /// not positive.
+  distances(const cloud& from, const cloud& to, const distance_options& options = {});
+
+  /// Distances that are known: NaN for a point that had none, any value >= max_distance where it is
+  /// that far or farther.
+  explicit distances(std::vector<float> values, const distance_options& options = {});
+
+  /// One value a point of the cloud, in its order: NaN for a point that is not finite; beyond the
+  /// maximum +infinity (drop) or the maximum (clamp).
+  [[nodiscard]] std::span<const float> values() const { return values_; }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] float operator[](std::size_t i) const { return values_[i]; }
+
+  [[nodiscard]] std::size_t n_dropped() const { return n_dropped_; }  ///< not finite
+  [[nodiscard]] std::size_t n_beyond() const { return n_beyond_; }    ///< not below max_distance
+  [[nodiscard]] std::size_t n_finite() const { return size() - n_dropped_; }
+  [[nodiscard]] double share_beyond() const;  ///< of the finite points
+
+  [[nodiscard]] double mean() const;
+  [[nodiscard]] double rmse() const;
+  [[nodiscard]] double max() const;
+  [[nodiscard]] double median() const { return quantile(0.5); }
+  /// q in [0, 1], interpolated linearly.
+  [[nodiscard]] double quantile(double q) const;
+
+  /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
+  /// in the denominator. Throws argument_error if tau is above the maximum.
+  [[nodiscard]] double share_below(double tau) const;
+
+ private:
+  void apply_maximum();
+  void summarize();
+  [[nodiscard]] std::size_t n_counted() const;
+  void demand_values(const char* what) const;
+
+  std::vector<float> values_;
+  distance_options options_;
+  std::size_t n_dropped_ = 0;
+  std::size_t n_beyond_ = 0;
+  double sum_ = 0;
+  double sum_of_squares_ = 0;
+  double max_ = 0;
+};
+
+namespace detail {
+
+inline constexpr std::size_t value_chunk = 1 << 16;
+
+inline void demand_points(const char* function, const char* which, const finite_points& p) {
+  if (p.points().empty()) {
+    throw undefined_error(message(function, ": no finite point in the ", which, " cloud (",
+                                  p.n_given(), " points, ", p.n_dropped(), " not finite)"));
+  }
+}
+
+inline void check_maximum(const distance_options& options) {
+  if (options.max_distance && !(*options.max_distance > 0)) {
+    throw argument_error(
+        message("cloud::distances: max_distance > 0 expected, found ", *options.max_distance));
+  }
+}
+
+/// A float not below the square of the largest distance that counts.
+inline float squared_bound(const distance_options& options) {
+  if (!options.max_distance) return std::numeric_limits<float>::infinity();
+  const double reach = *options.max_distance * (1 + 1e-6);
+  const double largest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::min(reach * reach, largest));
+}
+
+/// Distances in the order of the cloud, of squares in the order of its finite points.
+inline std::vector<float> roots_in_place(const finite_points& from, std::vector<float> squared) {
+  for (float& d : squared) d = std::sqrt(d);
+  if (from.n_dropped() == 0) return squared;
+  std::vector<float> values(from.n_given(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < squared.size(); ++i) values[from.source_index(i)] = squared[i];
+  return values;
+}
+
+inline search::nearest_options search_options(const distance_options& options) {
+  return {.squared_bound = squared_bound(options),
+          .threads = options.threads,
+          .control = options.control};
+}
+
+}  // namespace detail
+
+inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
+    : options_(options) {
+  detail::check_maximum(options);
+  const finite_points a(from, to.origin);
+  const finite_points b(to, to.origin);
+  detail::demand_points("cloud::distances", "first", a);
+  detail::demand_points("cloud::distances", "second", b);
+  const search::curve order = search::common_curve(a.points(), b.points());
+  const search::box_tree queries(a.points(), order, options.threads, options.control);
+  const search::box_tree targets(b.points(), order, options.threads, options.control);
+  values_ = detail::roots_in_place(
+      a, search::nearest_squared(queries, targets, detail::search_options(options)));
+  apply_maximum();
+  summarize();
+}
+
+inline distances::distances(std::vector<float> values, const distance_options& options)
+    : values_(std::move(values)), options_(options) {
+  detail::check_maximum(options);
+  apply_maximum();
+  summarize();
+}
+
+inline void distances::apply_maximum() {
+  if (!options_.max_distance) return;
+  const bool drop = options_.beyond == beyond_rule::drop;
+  const float beyond =
+      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
+  for (float& value : values_) {
+    if (static_cast<double>(value) >= *options_.max_distance) {
+      value = beyond;
+      ++n_beyond_;
+    }
+  }
+}
+
+inline void distances::summarize() {
+  struct sums {
+    std::size_t dropped = 0;
+    double sum = 0, squares = 0, max = 0;
+  };
+  const bool skip_infinite = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const auto sum_chunk = [&](const chunk& c) {
+    sums s;
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const double d = values_[i];
+      if (std::isnan(d)) ++s.dropped;
+      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
+      s.sum += d;
+      s.squares += d * d;
+      s.max = std::max(s.max, d);
+    }
+    return s;
+  };
+  const auto combine = [](sums a, const sums& b) {
+    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
+                std::max(a.max, b.max)};
+  };
+  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                                   sums{}, sum_chunk, combine);
+  n_dropped_ = total.dropped;
+  sum_ = total.sum;
+  sum_of_squares_ = total.squares;
+  max_ = total.max;
+}
+
+inline std::size_t distances::n_counted() const {
+  const bool drop = options_.max_distance && options_.beyond == beyond_rule::drop;
+  return n_finite() - (drop ? n_beyond_ : 0);
+}
+
+inline void distances::demand_values(const char* what) const {
+  if (n_counted() > 0) return;
+  throw undefined_error(message("cloud::distances: no distance to take the ", what, " of (", size(),
+                                " points, ", n_dropped_, " not finite, ", n_beyond_,
+                                " beyond max_distance)"));
+}
+
+inline double distances::share_beyond() const {
+  if (n_finite() == 0) demand_values("share");
+  return static_cast<double>(n_beyond_) / static_cast<double>(n_finite());
+}
+
+inline double distances::mean() const {
+  demand_values("mean");
+  return sum_ / static_cast<double>(n_counted());
+}
+
+inline double distances::rmse() const {
+  demand_values("root mean square");
+  return std::sqrt(sum_of_squares_ / static_cast<double>(n_counted()));
+}
+
+inline double distances::max() const {
+  demand_values("maximum");
+  return max_;
+}
+
+inline double distances::quantile(double q) const {
+  demand_values("quantile");
+  std::vector<float> counted;
+  counted.reserve(n_counted());
+  const bool all = n_counted() == n_finite();
+  std::copy_if(values_.begin(), values_.end(), std::back_inserter(counted),
+               [&](float d) { return !std::isnan(d) && (all || !std::isinf(d)); });
+  return stats::quantile_in_place<float>(counted, q);
+}
+
+inline double distances::share_below(double tau) const {
+  if (n_finite() == 0) demand_values("share");
+  if (options_.max_distance && tau > *options_.max_distance) {
+    throw argument_error(
+        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
+  }
+  const auto count_chunk = [&](const chunk& c) {
+    std::size_t n = 0;
+    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
+    return n;
+  };
+  const std::size_t below =
+      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
+                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
+  return static_cast<double>(below) / static_cast<double>(n_finite());
+}
+
+}  // namespace aib::cloud
