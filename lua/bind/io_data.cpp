@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/cloud/distances.hpp>
+#include <aib/io/cloud.hpp>
+#include <aib/io/depth.hpp>
+#include <aib/io/mesh.hpp>
+
+#include "kit.hpp"
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aib::bind {
+
+namespace {
+
+using std::filesystem::path;
+
+io::up_axis up_option(options& o) {
+  return o.choice("up", io::up_axis::z, {{"z", io::up_axis::z}, {"y", io::up_axis::y}});
+}
+
+raster::nearest_rule rule_option(options& o) {
+  using enum raster::nearest_rule;
+  return o.choice("rule", centre, {{"centre", centre}, {"floor", floor}});
+}
+
+io::cloud_options cloud_options(options& o) {
+  using enum io::splat_rule;
+  io::cloud_options c;
+  c.up = up_option(o);
+  c.splats = o.choice("splats", c.splats, {{"refuse", refuse}, {"centres", centres}});
+  return c;
+}
+
+io::depth_options depth_options(options& o) {
+  io::depth_options d;
+  d.channel = o.text("channel", d.channel);
+  d.scale = o.number("scale", d.scale);
+  d.max_depth = o.number("max_depth", d.max_depth);
+  d.width = o.count("width", d.width);
+  d.height = o.count("height", d.height);
+  d.rule = rule_option(o);
+  return d;
+}
+
+/// Columns that a script gives for a PLY file: `{ error = distances or list of numbers }`.
+class scalar_columns {
+ public:
+  scalar_columns(options& o, const char* name) {
+    const auto table = o.get<sol::table>(name);
+    if (!table) return;
+    for (const auto& [key, value] : *table) {
+      const auto column = read_if<std::string>(key);
+      auto* distances = get_if<cloud::distances>(value);
+      auto numbers = read_if<std::vector<float>>(value);
+      if (!column || (!distances && !numbers))
+        o.reject(name, "a table from names to distances or lists of numbers expected");
+      if (distances) numbers.emplace(distances->values().begin(), distances->values().end());
+      columns_.emplace(*column, std::move(*numbers));
+    }
+  }
+
+  std::vector<io::ply_scalar> views() const {
+    std::vector<io::ply_scalar> views;
+    for (const auto& [name, values] : columns_) views.push_back({name, values});
+    return views;
+  }
+
+ private:
+  std::map<std::string, std::vector<float>> columns_;  ///< sorted, so that files are the same
+};
+
+std::vector<cloud::color> colors_option(options& o, const char* name) {
+  std::vector<cloud::color> colors;
+  const auto rows = o.get<std::vector<std::vector<std::uint8_t>>>(name);
+  if (!rows) return colors;
+  for (const auto& row : *rows) {
+    if (row.size() != 3) o.reject(name, "a list of {red, green, blue}, each 0..255, expected");
+    colors.push_back({row[0], row[1], row[2]});
+  }
+  return colors;
+}
+
+std::vector<std::string> comments_option(options& o) {
+  return o.get<std::vector<std::string>>("comments").value_or(std::vector<std::string>());
+}
+
+void bind_readers(module& m) {
+  m.function("read_cloud", {"path", "options"}, [](const path& file, options& o) {
+    const auto read = cloud_options(o);
+    o.done();
+    return io::read_cloud(file, read);
+  });
+  m.function("read_mesh", {"path", "options"}, [](const path& file, options& o) {
+    const auto up = up_option(o);
+    o.done();
+    return io::read_mesh(file, {.up = up});
+  });
+  m.function("read_depth", {"path", "options"}, [](const path& file, options& o) {
+    const auto read = depth_options(o);
+    o.done();
+    return io::read_depth(file, read);
+  });
+}
+
+void bind_writers(module& m) {
+  m.function("write_cloud", {"path", "cloud", "options"},
+             [](const path& file, const cloud::cloud& cloud, options& o) {
+               const scalar_columns scalars(o, "scalars");
+               const auto colors = colors_option(o, "colors");
+               const auto comments = comments_option(o);
+               o.done();
+               io::write_cloud(
+                   file, cloud,
+                   {.scalars = scalars.views(), .colors = colors, .comments = comments});
+             });
+  m.function("write_mesh", {"path", "mesh", "options"},
+             [](const path& file, const mesh::mesh& mesh, options& o) {
+               const scalar_columns scalars(o, "face_scalars");
+               const auto vertex_colors = colors_option(o, "vertex_colors");
+               const auto face_colors = colors_option(o, "face_colors");
+               const auto comments = comments_option(o);
+               o.done();
+               io::write_mesh(file, mesh,
+                              {.vertex_colors = vertex_colors,
+                               .face_colors = face_colors,
+                               .face_scalars = scalars.views(),
+                               .comments = comments});
+             });
+  m.function("write_depth", {"path", "depth", "options"},
+             [](const path& file, const depth::depth_map& depth, options& o) {
+               o.done();
+               io::write_depth(file, depth.values);
+             });
+}
+
+}  // namespace
+
+void bind_io_data(lua_State* state) {
+  module m(state, "io");
+  bind_readers(m);
+  bind_writers(m);
+}
+
+}  // namespace aib::bind
