@@ -93,7 +93,7 @@ end
 
 -- Depth ---------------------------------------------------------------------------------------------------------------
 
---- Metrics of a frame; those of a length need the scale of the alignment.
+--- What is told of the frames; what is of a length needs the scale of the alignment.
 local depth_metrics <const> = {
   { name = "srmse", better = "lower" }, { name = "si_log_rmse", better = "lower" },
   { name = "coverage", better = "higher" }, { name = "abs_rel", better = "lower", of_length = true },
@@ -101,33 +101,29 @@ local depth_metrics <const> = {
   { name = "delta3", better = "higher", of_length = true },
 }
 
---- Errors of one frame; the truth is brought to the method's size, never the other way.
-local function frame_errors(name, unit, truth, files, frame, input)
+--- Adds a frame's errors; the truth is brought to the method's size, never the other way.
+local function add_frame(errors, name, unit, truth, files, input)
   local est <close> = aib.io.read_depth(files:frame(unit.result.depth, name))
   local full <close> = truth.depth(name)
   local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
-  return aib.depth.errors(est, ref, { scale = frame.scale })
+  errors:add(est, ref, { name = name })
 end
 
---- Mean over the frames that share a valid pixel with the truth.
 local function score_depth(unit, truth, files, frame, input, cell)
-  local names = files:present(unit.result.depth, truth.depth_names)
-  local sums, n = {}, 0
-  for _, name in ipairs(names) do
-    local errors = cell:attempt(function() return frame_errors(name, unit, truth, files, frame, input) end)
-    if errors then
-      n = n + 1
-      for _, metric in ipairs(depth_metrics) do sums[metric] = (sums[metric] or 0) + errors[metric.name] end
-    end
+  local errors = aib.depth.accumulate { transform = { scale = frame.scale or 1 } }
+  for _, name in ipairs(files:present(unit.result.depth, truth.depth_names)) do
+    add_frame(errors, name, unit, truth, files, input)
   end
+  local mean = cell:attempt(function() return errors:result() end, "depth") or { n_defined = 0 }
   local how = { rule = input.rule, scale = frame.scale, frames_expected = #truth.depth_names }
   for _, metric in ipairs(depth_metrics) do
-    local known = n > 0 and (frame.scale or not metric.of_length)
-    cell:add("depth." .. metric.name, known and sums[metric] / n or nil, {
-      better = metric.better, n = n, convention = "mean over frames", options = how,
+    local known = frame.scale or not metric.of_length
+    cell:add("depth." .. metric.name, known and mean[metric.name] or nil, {
+      better = metric.better, n = mean.n_defined, convention = "mean over frames", options = how,
     })
   end
-  if n < #names then cell:note(("depth: %d of %d frames have no valid pixel"):format(#names - n, #names)) end
+  local empty = #errors - mean.n_defined
+  if empty > 0 then cell:note(("depth: %d of %d frames have no valid pixel"):format(empty, #errors)) end
 end
 
 -- Points --------------------------------------------------------------------------------------------------------------
@@ -144,7 +140,7 @@ local distance_metrics <const> = {
 
 local function score_cloud(unit, truth, files, frame, input, cell)
   local result = unit.result
-  local all = result.cloud == "model" and frame.model.points or aib.io.read_cloud(files:file(result.cloud))
+  local all = result.cloud == "model" and frame.model.points or aib.scene.read_cloud(files, result.cloud)
   if not frame.scale then
     cell:note("points: they cannot be brought into the frame of the truth")
     return

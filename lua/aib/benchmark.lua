@@ -91,6 +91,15 @@ local function check_result(result, scenes, fail)
   if result.models and result.poses then fail("models or poses expected, found both") end
 end
 
+--- Names are those of groups in a report: two things of one name would be one.
+local function check_unique(list, what, fail)
+  local seen = {}
+  for _, name in ipairs(list) do
+    if seen[name] then fail(("two %s '%s'"):format(what, name)) end
+    seen[name] = true
+  end
+end
+
 local function check(benchmark, path)
   local function at(place)
     return function(sentence) failure.raise("format", ("%s: %s%s"):format(path, place, sentence)) end
@@ -100,16 +109,23 @@ local function check(benchmark, path)
   for i, scene in ipairs(benchmark.scenes) do
     check_fields(scene, scene_fields, { "name", "poses" }, at(("scene %d: "):format(i)))
     if scenes[scene.name] then at("")(("two scenes are called '%s'"):format(scene.name)) end
+    check_unique(scene.conditions or {}, "conditions are called", at(("scene %s: "):format(scene.name)))
     scenes[scene.name] = scene
   end
+  local names = {}
   for i, method in ipairs(benchmark.methods) do
     local place = at(("method %s: "):format(type(method) == "table" and method.name or i))
     check_fields(method, method_fields, { "name", "parameters", "results" }, place)
     check_name(method.parameters, parameters, "parameters", place)
+    names[i] = method.name
+    local places = {}
     for k, result in ipairs(method.results) do
       check_result(result, scenes, at(("method %s: result %d: "):format(method.name, k)))
+      places[k] = result.scene .. (result.condition and " / " .. result.condition or "")
     end
+    check_unique(places, "results are of", place)
   end
+  check_unique(names, "methods are called", at(""))
 end
 
 local function result_of(method, scene, condition)

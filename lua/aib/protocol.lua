@@ -13,6 +13,7 @@ local command_line = require "aib.command_line"
 local failure = require "aib.failure"
 local inputs = require "aib.inputs"
 local new_report = require("aib.report").new
+local progress = require "aib.progress"
 local suggest = require "aib.suggest"
 
 local protocol = {}
@@ -101,7 +102,8 @@ function protocol:main(arguments)
   local call, report
   local ok, caught = xpcall(function()
     call = command_line.parse(self, arguments)
-    if not call.help then report = self:run(call.inputs, call) end
+    progress.quiet = progress.quiet or call.quiet
+    if not call.help then report = self:run(call.inputs) end
   end, traced)
   if not ok then return explain(self, caught) end
   if call.help then

@@ -24,6 +24,13 @@ local fields <const> = {
   points = true, labels = true, crop = true, samples = true,
 }
 
+--- Reads a point cloud that has points. Raises a format error where it has none.
+function M.read_cloud(files, name)
+  local cloud = aib.io.read_cloud(files:file(name))
+  if #cloud == 0 then failure.raise("format", files:path(name) .. ": points expected, found none") end
+  return cloud
+end
+
 --- What a scene reads when it is first asked for.
 local readers = {}
 
@@ -57,7 +64,7 @@ function readers.mesh(scene) return scene.spec.mesh and aib.io.read_mesh(scene.f
 
 function readers.points(scene)
   if not scene.spec.points then return nil end
-  return M.cropped(scene, aib.io.read_cloud(scene.files:file(scene.spec.points)))
+  return M.cropped(scene, M.read_cloud(scene.files, scene.spec.points))
 end
 
 --- Names of the images that have a depth map.

@@ -1,28 +1,22 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Tests of Lua code. A script returns its suite and aib-lua runs it: dots, then what failed and where.
+--- Tests of Lua code. A script returns its cases and aib-lua runs them: dots, then what failed and where.
 ---
 ---   local aib = require "aib"
----   local test = aib.test "stats"
 ---
----   test("the mean of 1, 2, 3 is 2", function(t)
----     t.near(aib.stats.summary({ 1, 2, 3 }).mean, 2, 1e-15)
----   end)
----
----   return test
+---   return aib.test {
+---     ["the mean of 1, 2, 3 is 2"] = function(t)
+---       t:near(aib.stats.summary({ 1, 2, 3 }).mean, 2, 1e-15)
+---     end,
+---   }
 local suggest = require "aib.suggest"
-
-local suite = {}
-suite.__index = suite
-suite.__name = "aib.test"
-suite.__tostring = function(self) return ("test(%s, %d cases)"):format(self.name, #self.cases) end
 
 local line_width <const> = 72
 
 --- Text of a value that tells 1 from "1".
 local function shown(value)
-  if type(value) == "string" then return ("%q"):format(value):gsub("\\\n", "\\n") end
+  if type(value) == "string" then return (("%q"):format(value):gsub("\\\n", "\\n")) end
   if math.type(value) == "float" then return ("%.17g"):format(value) end
   if type(value) ~= "table" or getmetatable(value) then return tostring(value) end
   local parts = {}
@@ -45,38 +39,42 @@ local function same(a, b)
   return true
 end
 
---- Checks. Each raises at the line that calls it; `what` is said with the failure.
-local t = {}
+--- What a case is given: checks that raise an error at the line that calls them. `what` is said with the failure.
+local checks = {}
+checks.__index = checks
+
+local skipped = {}
 
 local function fail(what, sentence) error((what and what .. ": " or "") .. sentence, 3) end
 
 --- The condition holds (is neither nil nor false).
-function t.ok(condition, what)
+function checks:check(condition, what) --luacheck: ignore 212
   if not condition then fail(what, "expected to hold, found " .. tostring(condition)) end
 end
 
 --- Equal values; tables by their content.
-function t.equal(found, expected, what)
+function checks:equal(found, expected, what) --luacheck: ignore 212
   if not same(found, expected) then fail(what, ("expected %s, found %s"):format(shown(expected), shown(found))) end
 end
 
 --- Numbers that differ by `tolerance` at most. NaN is near nothing.
-function t.near(found, expected, tolerance, what)
+function checks:near(found, expected, tolerance, what) --luacheck: ignore 212
   if type(found) ~= "number" then fail(what, "expected a number, found " .. shown(found)) end
-  if not (math.abs(found - expected) <= tolerance) then
+  local near = math.abs(found - expected) <= tolerance
+  if not near then
     fail(what, ("expected %.17g within %g, found %.17g"):format(expected, tolerance, found))
   end
 end
 
 --- A text that contains another, letter by letter.
-function t.contains(text, part, what)
+function checks:contains(text, part, what) --luacheck: ignore 212
   if not tostring(text):find(part, 1, true) then
     fail(what, ("expected a text with %s, found %s"):format(shown(part), shown(tostring(text))))
   end
 end
 
---- A call that raises an error whose message contains `part`. Returns the message.
-function t.raises(part, f, ...)
+--- A call of `f` that raises an error whose message contains `part`. Returns the message.
+function checks:raises(part, f, ...) --luacheck: ignore 212
   local ok, e = pcall(f, ...)
   if ok then fail(nil, ("expected an error with %s, found none"):format(shown(part))) end
   if not tostring(e):find(part, 1, true) then
@@ -85,46 +83,60 @@ function t.raises(part, f, ...)
   return tostring(e)
 end
 
---- Ends the case; the summary lists it with the reason.
-function t.skip(reason) error(setmetatable({ reason = reason }, t), 0) end
-
---- Adds a case: a sentence that says what holds, and the function that checks it.
-function suite:__call(name, body)
-  if self.names[name] then error(("aib.test: two cases are called '%s'"):format(name), 2) end
-  self.names[name] = true
-  self.cases[#self.cases + 1] = { name = name, body = body }
+--- Ends the case, which counts as skipped; the summary says why.
+function checks:skip(reason) --luacheck: ignore 212
+  error(setmetatable({ reason = reason }, skipped), 0)
 end
 
-local function trace(e) return getmetatable(e) == t and e or debug.traceback(tostring(e), 2) end
+local suite = {}
+suite.__index = suite
+suite.__name = "aib.test"
+suite.__tostring = function(self) return ("test(%d cases)"):format(#suggest.keys(self.cases)) end
 
---- The lines of a trace that concern the script.
-local function shortened(text)
-  return (text:gsub("\nstack traceback:\n.*", ""))
+--- Runs a case: "passed", "failed" with the message, or "skipped" with the reason.
+local function outcome(case)
+  local ok, e = xpcall(case, function(e)
+    return getmetatable(e) == skipped and e or debug.traceback(tostring(e), 2)
+  end, setmetatable({}, checks))
+  if ok then return "passed" end
+  if getmetatable(e) == skipped then return "skipped", e.reason end
+  local at_check = e:find("^[^\n]*: expected ")
+  return "failed", at_check and e:gsub("\nstack traceback:.*", "") or e
 end
 
---- Runs the cases whose names contain `filter` (all without it) and prints how they went. Returns the number that
---- failed.
+--- Runs the cases whose names contain `filter` (all without it), in the order of their names, and prints how they
+--- went. Returns how many passed, failed and were skipped.
 function suite:run(filter)
-  local counts, failures, skips = { run = 0 }, {}, {}
-  for _, case in ipairs(self.cases) do
-    if not filter or case.name:find(filter, 1, true) then
-      local ok, e = xpcall(case.body, trace, t)
-      counts.run = counts.run + 1
-      local skipped = not ok and getmetatable(e) == t
-      if skipped then skips[#skips + 1] = ("SKIPPED: %s: %s"):format(case.name, e.reason) end
-      if not ok and not skipped then failures[#failures + 1] = { case.name, shortened(e) } end
-      io.stdout:write(ok and "." or skipped and "s" or "F", counts.run % line_width == 0 and "\n" or "")
+  local counts, dots, lines = { passed = 0, failed = 0, skipped = 0 }, 0, {}
+  local signs = { passed = ".", failed = "F", skipped = "s" }
+  for _, name in ipairs(suggest.keys(self.cases)) do
+    if not filter or name:find(filter, 1, true) then
+      local how, why = outcome(self.cases[name])
+      counts[how] = counts[how] + 1
+      dots = dots + 1
+      io.stdout:write(signs[how], dots % line_width == 0 and "\n" or ""):flush()
+      if how == "failed" then lines[#lines + 1] = ("\nFAILED  %s\n  %s"):format(name, why) end
+      if how == "skipped" then lines[#lines + 1] = ("SKIPPED: %s: %s"):format(name, why) end
     end
   end
-  print()
-  for _, failure in ipairs(failures) do print(("\nFAILED  %s\n  %s"):format(failure[1], failure[2])) end
-  for _, skip in ipairs(skips) do print(skip) end
-  print(("%s: %d passed, %d failed, %d skipped"):format(self.name, counts.run - #failures - #skips, #failures, #skips))
-  return #failures
+  io.stdout:write("\n", table.concat(lines, "\n"), #lines > 0 and "\n" or "")
+  print(("%d passed, %d failed, %d skipped"):format(counts.passed, counts.failed, counts.skipped))
+  return counts
 end
 
---- Runs as a program: `aib-lua test_x.lua [FILTER]`. Returns the exit code.
-function suite:main(arguments) return self:run(arguments[1]) == 0 and 0 or 1 end
+--- Runs as a program: `aib-lua test_x.lua [FILTER]`. Returns the exit code: 1 where a case failed or none was run.
+function suite:main(arguments)
+  local counts = self:run(arguments[1])
+  return counts.failed == 0 and counts.passed + counts.skipped > 0 and 0 or 1
+end
 
---- A new suite.
-return function(name) return setmetatable({ name = name, cases = {}, names = {} }, suite) end
+--- A suite of cases: functions by the sentence that they check.
+return function(cases)
+  if type(cases) ~= "table" then error("aib.test: a table of cases expected, found " .. type(cases), 2) end
+  for name, case in pairs(cases) do
+    if type(name) ~= "string" or type(case) ~= "function" then
+      error(("aib.test: functions by name expected, found %s = %s"):format(tostring(name), type(case)), 2)
+    end
+  end
+  return setmetatable({ cases = cases }, suite)
+end

@@ -13,15 +13,16 @@ local function call(protocol, arguments)
   local function catch(list)
     return { write = function(_, ...) for _, text in ipairs { ... } do list[#list + 1] = text end end }
   end
-  io.stdout, io.stderr = catch(out), catch(err)
+  io.stdout, io.stderr = catch(out), catch(err)  -- luacheck: ignore 122
   local ok, code = pcall(protocol.main, protocol, arguments)
-  io.stdout, io.stderr = stdout, stderr
+  io.stdout, io.stderr = stdout, stderr  -- luacheck: ignore 122
   if not ok then error(code, 0) end
   return code, table.concat(out), table.concat(err)
 end
 
 local function protocol_with(inputs, run)
-  return aib.protocol { name = "demo", help = "Says things.", cite = "Nobody 2026", inputs = inputs, run = run or function() end }
+  run = run or function() end
+  return aib.protocol { name = "demo", help = "Says things.", cite = "Nobody 2026", inputs = inputs, run = run }
 end
 
 --- The values that the protocol's run is given.
@@ -41,8 +42,9 @@ end
 return aib.test {
   ["every kind of input is read from the command line"] = function(t)
     local inputs = {
-      number = { kind = "number", unit = "m" }, count = { kind = "integer" }, rule = { kind = "choice", choices = { "a", "b" } },
-      tau = { kind = "list", of = "number", unit = "m" }, fast = { kind = "flag" }, slow = { kind = "flag", default = true },
+      number = { kind = "number", unit = "m" }, count = { kind = "integer" },
+      rule = { kind = "choice", choices = { "a", "b" } }, tau = { kind = "list", of = "number", unit = "m" },
+      fast = { kind = "flag" }, slow = { kind = "flag", default = true },
       out_path = { kind = "path" }, names = { kind = "list", default = { "x" } },
     }
     t:equal(values_of(inputs, { "--number", "5cm", "--count=3", "--rule", "b", "--tau", "1mm,2", "--tau=3km", "--fast",
@@ -151,11 +153,12 @@ cite: Nobody 2026
     t:raises("test_protocol.lua:", declare { name = "x" })
     t:raises("aib.protocol: run: a function expected", declare { name = "x" })
     t:raises("aib.protocol: name: a string expected", declare { run = run })
-    t:raises("aib.protocol: unknown field 'input', did you mean 'inputs'?", declare { name = "x", run = run, input = {} })
+    t:raises("aib.protocol: unknown field 'input', did you mean 'inputs'?",
+      declare { name = "x", run = run, input = {} })
     local function input(key, spec) return declare { name = "x", run = run, inputs = { [key] = spec } } end
     t:raises("input 'a': unknown kind 'file_name' (known: choice, file,", input("a", { kind = "file_name" }))
     t:raises("input 'a': unknown kind 'fiel', did you mean 'file'?", input("a", { kind = "fiel" }))
-    t:raises("input 'a': unknown field 'defualt', did you mean 'default'?", input("a", { kind = "file", defualt = 1 }))
+    t:raises("input 'a': unknown field 'hlep', did you mean 'help'?", input("a", { kind = "file", hlep = "x" }))
     t:raises("input 'a': choices: a list of names expected", input("a", { kind = "choice" }))
     t:raises("input 'a': an integer expected, found string", input("a", { kind = "integer", default = "3" }))
     t:raises("input 'json': the name is taken", input("json", { kind = "file" }))

@@ -13,7 +13,9 @@ end
 --- Three methods over a scene and the two conditions of another.
 local function table_report()
   return report_of(function(report)
-    local places = { { scene = "crane" }, { scene = "office", condition = "low" }, { scene = "office", condition = "high" } }
+    local places = {
+      { scene = "crane" }, { scene = "office", condition = "low" }, { scene = "office", condition = "high" },
+    }
     for p, place in ipairs(places) do
       for m, method in ipairs { "A", "B", "C" } do
         place.method = method
@@ -74,7 +76,9 @@ Notes
 
   ["equal values are equally good, and one value alone is not the best"] = function(t)
     local report = report_of(function(r)
-      for _, method in ipairs { "A", "B" } do r:within({ method = method, scene = "s" }):add("x", 0.5, { better = "higher" }) end
+      for _, method in ipairs { "A", "B" } do
+        r:within({ method = method, scene = "s" }):add("x", 0.5, { better = "higher" })
+      end
       r:within({ method = "A", scene = "other" }):add("x", 0.5, { better = "higher" })
       r:table { title = "X", metrics = { "x" } }
     end)
