@@ -115,7 +115,7 @@ local function score_depth(unit, truth, files, frame, input, cell)
     add_frame(errors, name, unit, truth, files, input)
   end
   local mean = cell:attempt(function() return errors:result() end, "depth") or { n_defined = 0 }
-  local how = { rule = input.rule, scale = frame.scale, frames_expected = #truth.depth_names }
+  local how = { rule = input.rule, frames_expected = #truth.depth_names }
   for _, metric in ipairs(depth_metrics) do
     local known = frame.scale or not metric.of_length
     cell:add("depth." .. metric.name, known and mean[metric.name] or nil, {

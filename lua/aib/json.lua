@@ -3,6 +3,8 @@
 
 --- JSON text of values and values of JSON text: keys sorted, numbers in their shortest exact form, so that the
 --- same values are the same bytes.
+local failure = require "aib.failure"
+
 local M = {}
 
 --- Stands for null, which a Lua table cannot hold.
@@ -93,8 +95,8 @@ reader.__index = reader
 function reader:fail(expected)
   local _, line = self.text:sub(1, self.at - 1):gsub("\n", "")
   local found = self.text:sub(self.at, self.at)
-  error(("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected,
-    found == "" and "the end" or "'" .. found .. "'"), 0)
+  failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected,
+    found == "" and "the end" or "'" .. found .. "'"))
 end
 
 --- Skips blanks, then takes what matches `pattern`, or returns nil.
@@ -183,7 +185,7 @@ function reader:value(depth)
   return x
 end
 
---- The value of a JSON text. `name` (a path) begins the message of what is wrong.
+--- The value of a JSON text. Raises a format error that begins with `name` (a path) where it is none.
 function M.decode(text, name)
   local r = setmetatable({ text = text, at = 1, name = name or "json" }, reader)
   local value = r:value(0)

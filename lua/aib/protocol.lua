@@ -57,15 +57,24 @@ end
 --- Files are told by their name and content in a report, folders not at all: the numbers do not depend on where they
 --- lie.
 local function state_inputs(report, list, values)
+  local function state_file(path)
+    local name = path:match("[^/]*$")
+    while report.store.sources[name] do name = name .. "'" end
+    report:source(name, aib.system.fingerprint(path))
+    return name
+  end
   for _, input in ipairs(list) do
-    local value = values[input.key]
-    if input.kind == "file" then
-      local name = value:match("[^/]*$")
-      report.store.inputs[input.key] = name
-      report:source(name, aib.system.fingerprint(value))
-    elseif input.kind ~= "folder" and input.kind ~= "path" and not (input.kind == "list" and not input.of) then
-      report.store.inputs[input.key] = value
+    local value, kind = values[input.key], input.kind == "list" and (input.of or "path") or input.kind
+    if kind == "file" then
+      if input.kind == "list" then
+        local names = {}
+        for i, path in ipairs(value) do names[i] = state_file(path) end
+        value = names
+      else
+        value = state_file(value)
+      end
     end
+    if kind ~= "folder" and kind ~= "path" then report.store.inputs[input.key] = value end
   end
 end
 
