@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // A program of somebody else: with points and images of its own.
+#if __has_include(<aib/cloud.hpp>)
+#include <aib/cloud.hpp>
+#include <aib/depth.hpp>
+#else  // the single header
 #include <aib/aib.hpp>
+#endif
 
 #include <cstdio>
 #include <vector>
