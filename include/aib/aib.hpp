@@ -9,8 +9,11 @@
 #include <aib/math.hpp>
 #include <aib/stats.hpp>
 #include <aib/raster.hpp>
+#include <aib/search.hpp>
 #include <aib/depth.hpp>
 #include <aib/pose.hpp>
 #include <aib/cloud.hpp>
 #include <aib/mesh.hpp>
+#include <aib/align.hpp>
+#include <aib/sample.hpp>
 #include <aib/io.hpp>

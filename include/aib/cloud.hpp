@@ -5,4 +5,9 @@
 /// @file
 /// Point clouds and the distances between them.
 
+#include <aib/cloud/box.hpp>
 #include <aib/cloud/cloud.hpp>
+#include <aib/cloud/compare.hpp>
+#include <aib/cloud/distances.hpp>
+#include <aib/cloud/positions.hpp>
+#include <aib/cloud/transform.hpp>

@@ -5,4 +5,8 @@
 /// @file
 /// Depth maps and their errors.
 
+#include <aib/depth/accumulate.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/depth/error_sums.hpp>
+#include <aib/depth/errors.hpp>
+#include <aib/depth/fit.hpp>

@@ -6,6 +6,7 @@
 /// Rotations, transforms, cameras.
 
 #include <aib/math/camera.hpp>
+#include <aib/math/log_ratio.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/rotation.hpp>
 #include <aib/math/sim3.hpp>

@@ -6,3 +6,5 @@
 /// Triangle meshes and distances to them.
 
 #include <aib/mesh/mesh.hpp>
+#include <aib/mesh/surface.hpp>
+#include <aib/mesh/transform.hpp>

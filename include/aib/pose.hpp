@@ -5,4 +5,15 @@
 /// @file
 /// Trajectories and their errors; needs Eigen alone.
 
+#include <aib/pose/angle_bins.hpp>
+#include <aib/pose/associate.hpp>
+#include <aib/pose/auc.hpp>
+#include <aib/pose/auc_convention.hpp>
+#include <aib/pose/baselines.hpp>
+#include <aib/pose/focal.hpp>
+#include <aib/pose/frame_pairs.hpp>
+#include <aib/pose/joint_counts.hpp>
+#include <aib/pose/registered.hpp>
+#include <aib/pose/registration.hpp>
+#include <aib/pose/relative_angles.hpp>
 #include <aib/pose/trajectory.hpp>

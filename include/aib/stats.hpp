@@ -5,6 +5,7 @@
 /// @file
 /// Mergeable moments, quantiles, histograms.
 
+#include <aib/stats/bootstrap.hpp>
 #include <aib/stats/histogram.hpp>
 #include <aib/stats/moments.hpp>
 #include <aib/stats/quantiles.hpp>

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include <algorithm>
@@ -26,22 +27,32 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <queue>
 #include <ranges>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <type_traits>
 #include <unistd.h>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -810,6 +821,71 @@ inline double camera::cy() const {
 
 }  // namespace aib::math
 
+// aib/math/log_ratio.hpp
+
+namespace aib::math {
+
+namespace detail {
+
+inline namespace AIB_ISA {
+
+/// The exponent of a positive normal number, as a double.
+inline double exponent(double x) {
+  // The exponent bits put into the mantissa of 2^52 make 2^52 + exponent + 1023.
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x) >> 52;
+  return std::bit_cast<double>(bits | 0x4330000000000000u) - (0x1p52 + 1023);
+}
+
+/// The number with its exponent replaced by 0: in [1, 2).
+inline double mantissa(double x) {
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+  return std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u);
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// ln(a / b) of two positive, finite, normal doubles, within 3e-16 of the largest of 1 and the
+/// result. The ratio never overflows; equal numbers give exactly 0.
+///
+/// Free of branches, calls and tables, so that a loop over it becomes vector code; the same bits on
+/// every machine. ln(a / b) = 2 atanh((a - b) / (a + b)) on the mantissas, by its Taylor series.
+inline double log_ratio(double a, double b) {
+  // The larger mantissa is halved where the ratio leaves [1 / sqrt 2, sqrt 2].
+  double ma = detail::mantissa(a);
+  double mb = detail::mantissa(b);
+  const double half_a = ma > std::numbers::sqrt2 * mb ? 1.0 : 0.0;
+  const double half_b = mb > std::numbers::sqrt2 * ma ? 1.0 : 0.0;
+  ma -= 0.5 * ma * half_a;
+  mb -= 0.5 * mb * half_b;
+  const double e = detail::exponent(a) - detail::exponent(b) + (half_a - half_b);
+
+  // |s| <= 0.1716: the first term left out is below 3e-17 of the sum.
+  const double s = (ma - mb) / (ma + mb);
+  const double z = s * s;
+  double series = 1.0 / 19;
+  series = series * z + 1.0 / 17;
+  series = series * z + 1.0 / 15;
+  series = series * z + 1.0 / 13;
+  series = series * z + 1.0 / 11;
+  series = series * z + 1.0 / 9;
+  series = series * z + 1.0 / 7;
+  series = series * z + 1.0 / 5;
+  series = series * z + 1.0 / 3;
+  const double mantissas = 2 * s + 2 * s * (z * series);
+  // ln 2 in two parts: the first has few enough bits for e * ln2_high to be exact.
+  constexpr double ln2_high = 0x1.62e42fefa3p-1;
+  constexpr double ln2_low = 0x1.3de6af278ece6p-42;
+  return e * ln2_high + (mantissas + e * ln2_low);
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::math
+
 // aib/math/rotation.hpp
 
 namespace aib::math {
@@ -968,67 +1044,6 @@ struct sim3 {
 
 }  // namespace aib::math
 
-// aib/stats/histogram.hpp
-
-namespace aib::stats {
-
-/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
-/// dropped.
-class histogram {
- public:
-  /// Throws argument_error unless low < high and bins > 0.
-  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
-    if (!(low < high) || bins == 0) {
-      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
-                                   low, ", ", high, ", ", bins));
-    }
-  }
-
-  /// A NaN counts as above.
-  void add(double value) {
-    if (value < low_) {
-      ++below_;
-    } else if (value < high_) {
-      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
-      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
-    } else {
-      ++above_;
-    }
-  }
-
-  /// Throws argument_error if the bins differ.
-  histogram& operator+=(const histogram& other) {
-    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
-      throw argument_error("stats::histogram: the bins of merged histograms differ");
-    }
-    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
-    below_ += other.below_;
-    above_ += other.above_;
-    return *this;
-  }
-
-  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
-  [[nodiscard]] std::uint64_t below() const { return below_; }
-  [[nodiscard]] std::uint64_t above() const { return above_; }
-  [[nodiscard]] std::uint64_t total() const {
-    std::uint64_t n = below_ + above_;
-    for (const std::uint64_t c : counts_) n += c;
-    return n;
-  }
-  /// Lower edge of bin i; edge(bins) is the upper end.
-  [[nodiscard]] double edge(std::size_t i) const {
-    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
-  }
-
- private:
-  double low_, high_;
-  std::vector<std::uint64_t> counts_;
-  std::uint64_t below_ = 0;
-  std::uint64_t above_ = 0;
-};
-
-}  // namespace aib::stats
-
 // aib/stats/moments.hpp
 
 namespace aib::stats {
@@ -1038,6 +1053,16 @@ namespace aib::stats {
 /// "Updating formulae and a pairwise algorithm for computing sample variances", 1979.
 class moments {
  public:
+  /// The moments of values that were summed elsewhere: `squares` is the sum of squared deviations
+  /// from `mean`. The range is not known and stays empty.
+  [[nodiscard]] static moments from(std::uint64_t count, double mean, double squares) {
+    moments m;
+    m.count_ = count;
+    m.mean_ = mean;
+    m.squares_ = squares;
+    return m;
+  }
+
   void add(double value) {
     ++count_;
     const double delta = value - mean_;
@@ -1127,6 +1152,127 @@ template <class Scalar>
 double median(std::span<const Scalar> values) {
   return quantile(values, 0.5);
 }
+
+}  // namespace aib::stats
+
+// aib/stats/bootstrap.hpp
+
+namespace aib::stats {
+
+struct bootstrap_options {
+  std::size_t block = 10;  ///< neighbours drawn together; 1: independent values
+  std::size_t resamples = 2000;
+  double level = 0.95;  ///< share of the resampled means inside the interval
+  std::uint64_t seed = 1;
+};
+
+/// A mean and how far it may be off.
+struct interval {
+  double mean;
+  double low;
+  double high;
+  double deviation;  ///< of the resampled means: the standard error
+};
+
+/// Percentile interval of the mean of a series whose neighbours are alike, as frames of a flight
+/// that overlap by 80 % are: blocks of consecutive values are drawn with replacement, the series
+/// taken as a ring. With independent draws (block = 1) the interval of such a series is too narrow.
+/// A difference of two conditions: pass the differences frame by frame.
+///
+/// A block longer than the series is the series, and the interval a point. Throws undefined_error
+/// if there is no value, argument_error if block or resamples is 0 or level outside (0, 1).
+/// Source: Politis, Romano, "A circular block-resampling procedure for stationary data", 1992.
+[[nodiscard]] inline interval bootstrap_mean(std::span<const double> values,
+                                             const bootstrap_options& options = {}) {
+  if (values.empty()) throw undefined_error("stats::bootstrap_mean: no values");
+  if (options.block == 0 || options.resamples == 0 || !(options.level > 0 && options.level < 1)) {
+    throw argument_error(
+        message("stats::bootstrap_mean: block and resamples > 0 and level in "
+                "(0, 1) expected, found ",
+                options.block, ", ", options.resamples, " and ", options.level));
+  }
+  const std::size_t n = values.size();
+  random_engine random(options.seed);
+  std::vector<double> means(options.resamples);
+  for (double& mean : means) {
+    moments sample;
+    while (sample.count() < n) {
+      const std::size_t first = random.below(n);
+      const std::size_t length = std::min(options.block, n - sample.count());
+      for (std::size_t i = 0; i < length; ++i) sample.add(values[(first + i) % n]);
+    }
+    mean = sample.mean();
+  }
+  moments of_values, of_means;
+  for (const double v : values) of_values.add(v);
+  for (const double m : means) of_means.add(m);
+  const double tail = (1 - options.level) / 2;
+  return {.mean = of_values.mean(),
+          .low = quantile<double>(means, tail),
+          .high = quantile<double>(means, 1 - tail),
+          .deviation = of_means.deviation()};
+}
+
+}  // namespace aib::stats
+
+// aib/stats/histogram.hpp
+
+namespace aib::stats {
+
+/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
+/// dropped.
+class histogram {
+ public:
+  /// Throws argument_error unless low < high and bins > 0.
+  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
+    if (!(low < high) || bins == 0) {
+      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
+                                   low, ", ", high, ", ", bins));
+    }
+  }
+
+  /// A NaN counts as above.
+  void add(double value) {
+    if (value < low_) {
+      ++below_;
+    } else if (value < high_) {
+      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
+      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
+    } else {
+      ++above_;
+    }
+  }
+
+  /// Throws argument_error if the bins differ.
+  histogram& operator+=(const histogram& other) {
+    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
+      throw argument_error("stats::histogram: the bins of merged histograms differ");
+    }
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+    below_ += other.below_;
+    above_ += other.above_;
+    return *this;
+  }
+
+  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
+  [[nodiscard]] std::uint64_t below() const { return below_; }
+  [[nodiscard]] std::uint64_t above() const { return above_; }
+  [[nodiscard]] std::uint64_t total() const {
+    std::uint64_t n = below_ + above_;
+    for (const std::uint64_t c : counts_) n += c;
+    return n;
+  }
+  /// Lower edge of bin i; edge(bins) is the upper end.
+  [[nodiscard]] double edge(std::size_t i) const {
+    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
+  }
+
+ private:
+  double low_, high_;
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t below_ = 0;
+  std::uint64_t above_ = 0;
+};
 
 }  // namespace aib::stats
 
@@ -1284,6 +1430,937 @@ template <class T>
 
 }  // namespace aib::raster
 
+// aib/search/buffer.hpp
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace aib::search {
+
+/// An array whose elements begin undefined, in large pages where the system has them: the first
+/// touch of millions of small pages would cost as much as the search itself.
+template <class T>
+class buffer {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  buffer() = default;
+  explicit buffer(std::size_t size) : data_(allocate(size)), size_(size) {}
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] T* data() { return data_.get(); }
+  [[nodiscard]] const T* data() const { return data_.get(); }
+  [[nodiscard]] T& operator[](std::size_t i) { return data_[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return data_[i]; }
+  [[nodiscard]] std::span<const T> span() const { return {data(), size_}; }
+
+ private:
+  static constexpr std::size_t large_page = std::size_t{2} << 20;
+
+  static std::size_t alignment(std::size_t size) {
+    return size * sizeof(T) >= 2 * large_page ? large_page : 64;
+  }
+
+  struct release {
+    std::size_t alignment = 64;
+    void operator()(T* p) const { ::operator delete (p, std::align_val_t{alignment}); }
+  };
+
+  static std::unique_ptr<T[], release> allocate(std::size_t size) {
+    const std::size_t bytes = size * sizeof(T);
+    const std::size_t align = alignment(size);
+    void* memory = ::operator new (bytes, std::align_val_t{align});
+#if defined(__linux__)
+    if (align == large_page) madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+    return {static_cast<T*>(memory), release{align}};
+  }
+
+  std::unique_ptr<T[], release> data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace aib::search
+
+// aib/search/hilbert.hpp
+
+namespace aib::search {
+
+namespace detail {
+
+/// How the curve lies in one cell: which axis stands at each place, which places run backwards,
+/// and whether the walk through the eight children is reversed.
+struct hilbert_state {
+  std::array<unsigned, 3> axis{0, 1, 2};
+  std::array<unsigned, 3> flip{0, 0, 0};
+  unsigned reversed = 0;
+};
+
+/// One level down: the child's place on the curve and how the curve lies in the child.
+struct hilbert_step {
+  unsigned place;  ///< 0..7
+  hilbert_state child;
+};
+
+/// `octant` has bit k set in the upper half of axis k.
+/// Source: Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004, one bit plane.
+constexpr hilbert_step descend(hilbert_state state, unsigned octant) {
+  std::array<unsigned, 3> bit{};
+  for (std::size_t k = 0; k < 3; ++k) bit[k] = ((octant >> state.axis[k]) & 1) ^ state.flip[k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (bit[k]) {
+      state.flip[0] ^= 1;
+    } else {
+      const unsigned axis = state.axis[0], flip = state.flip[0];
+      state.axis[0] = state.axis[k], state.flip[0] = state.flip[k];
+      state.axis[k] = axis, state.flip[k] = flip;
+    }
+  }
+  const unsigned second = bit[1] ^ bit[0];
+  const unsigned third = bit[2] ^ second;
+  const unsigned r = state.reversed;
+  state.reversed ^= third;
+  return {(bit[0] ^ r) << 2 | (second ^ r) << 1 | (third ^ r), state};
+}
+
+inline constexpr std::array<std::array<unsigned, 3>, 6> axis_orders{
+    {{0, 1, 2}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}}};
+
+constexpr unsigned number_of(const hilbert_state& s) {
+  unsigned order = 0;
+  while (axis_orders[order] != s.axis) ++order;
+  return order << 4 | (s.flip[0] | s.flip[1] << 1 | s.flip[2] << 2) << 1 | s.reversed;
+}
+
+constexpr hilbert_state state_of(unsigned number) {
+  return {axis_orders[number >> 4],
+          {(number >> 1) & 1, (number >> 2) & 1, (number >> 3) & 1},
+          number & 1};
+}
+
+inline constexpr unsigned hilbert_states = 96;
+
+/// One level: [state][octant] -> next state << 3 | place.
+constexpr std::array<std::uint16_t, hilbert_states * 8> make_octant_table() {
+  std::array<std::uint16_t, hilbert_states * 8> table{};
+  for (unsigned number = 0; number < hilbert_states; ++number) {
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      const hilbert_step step = descend(state_of(number), octant);
+      table[number * 8 + octant] =
+          static_cast<std::uint16_t>(number_of(step.child) << 3 | step.place);
+    }
+  }
+  return table;
+}
+
+/// Two levels in one look-up: [state][two octants] -> next state << 6 | two places. 12 KB.
+constexpr std::array<std::uint16_t, hilbert_states * 64> make_hilbert_table() {
+  const auto octants = make_octant_table();
+  std::array<std::uint16_t, hilbert_states * 64> table{};
+  for (unsigned i = 0; i < table.size(); ++i) {
+    const unsigned upper = octants[i / 64 * 8 + i / 8 % 8];
+    const unsigned lower = octants[(upper >> 3) * 8 + i % 8];
+    table[i] = static_cast<std::uint16_t>((lower >> 3) << 6 | (upper & 7) << 3 | (lower & 7));
+  }
+  return table;
+}
+
+inline constexpr auto hilbert_table = make_hilbert_table();
+
+/// The low 21 bits of x, two zeros between each.
+constexpr std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+}  // namespace detail
+
+/// Place of a cell along the Hilbert curve through a cube of 2^bits cells a side: neighbours on the
+/// curve are neighbours in space.
+///
+/// bits   even, at most 20; x, y, z < 2^bits
+[[nodiscard]] constexpr std::uint64_t hilbert_key(std::uint32_t x,
+                                                  std::uint32_t y,
+                                                  std::uint32_t z,
+                                                  int bits) {
+  const std::uint64_t octants = detail::spread(x) | detail::spread(y) << 1 | detail::spread(z) << 2;
+  std::uint64_t key = 0;
+  unsigned state = 0;
+  for (int shift = 3 * bits - 6; shift >= 0; shift -= 6) {
+    const unsigned entry = detail::hilbert_table[state * 64 + ((octants >> shift) & 63)];
+    state = entry >> 6;
+    key = key << 6 | (entry & 63);
+  }
+  return key;
+}
+
+}  // namespace aib::search
+
+// aib/search/curve.hpp
+
+namespace aib::search {
+
+/// A Hilbert curve through a cube of space. Points outside take the key of the nearest cell, so
+/// that a few strays do not take the resolution from all others.
+struct curve {
+  Eigen::Vector3f low = Eigen::Vector3f::Zero();
+  float cells_per_unit = 1;
+  int bits = 14;        ///< per axis, even
+  int index_bits = 22;  ///< what is left of 64 bits for the index of a point
+
+  [[nodiscard]] std::uint64_t key(const Eigen::Vector3f& p) const {
+    return hilbert_key(cell(p, 0), cell(p, 1), cell(p, 2), bits);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t cell(const Eigen::Vector3f& p, int axis) const {
+    const float last = static_cast<float>((1u << bits) - 1);
+    const float place = (p[axis] - low[axis]) * cells_per_unit;
+    return static_cast<std::uint32_t>(place > 0 ? std::min(place, last) : 0.0f);
+  }
+};
+
+namespace detail {
+
+/// Coordinates on one axis of at most 20 000 points of a cloud, evenly picked.
+inline void sample_axis(std::span<const Eigen::Vector3f> points,
+                        int axis,
+                        std::vector<float>& values) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 20000);
+  for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i][axis]);
+}
+
+struct interval {
+  float low;
+  float high;
+};
+
+/// From the 0.5 to the 99.5 percentile, and a tenth more on both sides.
+inline interval bulk_of(std::vector<float>& values) {
+  if (values.empty()) return {0, 0};
+  const auto cut = static_cast<std::ptrdiff_t>(values.size() / 200);
+  std::nth_element(values.begin(), values.begin() + cut, values.end());
+  const float low = values[static_cast<std::size_t>(cut)];
+  std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
+  const float high = *(values.end() - 1 - cut);
+  const float margin = (high - low) / 10;
+  return {low - margin, high + margin};
+}
+
+}  // namespace detail
+
+/// The curve through the bulk of both clouds together.
+[[nodiscard]] inline curve common_curve(std::span<const Eigen::Vector3f> a,
+                                        std::span<const Eigen::Vector3f> b) {
+  const std::size_t most = std::max<std::size_t>({a.size(), b.size(), 2});
+  curve c;
+  c.index_bits = static_cast<int>(std::bit_width(most - 1));
+  c.bits = std::min(14, (64 - c.index_bits) / 3) & ~1;
+  float extent = 0;
+  std::vector<float> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    detail::sample_axis(a, axis, values);
+    detail::sample_axis(b, axis, values);
+    const detail::interval bulk = detail::bulk_of(values);
+    c.low[axis] = bulk.low;
+    extent = std::max(extent, bulk.high - bulk.low);
+  }
+  if (extent > 0) c.cells_per_unit = static_cast<float>((1u << c.bits) - 1) / extent;
+  return c;
+}
+
+}  // namespace aib::search
+
+// aib/search/radix_sort.hpp
+
+namespace aib::search {
+
+/// Bits [low, high) of a word.
+struct bit_range {
+  int low;
+  int high;
+};
+
+namespace detail {
+
+/// One stable counting pass: from `in` to `out` by the digit at `shift`.
+inline void scatter_by_digit(const buffer<std::uint64_t>& in,
+                             buffer<std::uint64_t>& out,
+                             int shift,
+                             int width,
+                             unsigned threads,
+                             const control& control) {
+  const std::size_t digits = std::size_t{1} << width;
+  const auto digit = [&](std::uint64_t word) { return (word >> shift) & (digits - 1); };
+  const std::size_t share = (in.size() + threads - 1) / threads;
+  std::vector<std::size_t> place(digits * threads, 0);  // [chunk][digit]
+  for_each_chunk(in.size(), share, threads, control, [&](const chunk& c) {
+    std::size_t* count = &place[digits * c.index];
+    for (std::size_t i = c.begin; i < c.end; ++i) ++count[digit(in[i])];
+  });
+  std::size_t next = 0;
+  for (std::size_t d = 0; d < digits; ++d) {
+    for (std::size_t t = 0; t < threads; ++t) {
+      next += std::exchange(place[digits * t + d], next);
+    }
+  }
+  for_each_chunk(in.size(), share, threads, control, [&](const chunk& c) {
+    std::size_t* to = &place[digits * c.index];
+    for (std::size_t i = c.begin; i < c.end; ++i) out[to[digit(in[i])]++] = in[i];
+  });
+}
+
+}  // namespace detail
+
+/// Sorts words by some of their bits, equal ones in their order. Linear time; one copy of the words
+/// beside them. `threads` >= 1.
+inline void radix_sort(buffer<std::uint64_t>& words,
+                       bit_range bits,
+                       unsigned threads,
+                       const control& control = {}) {
+  const int total = bits.high - bits.low;
+  if (total <= 0 || words.size() < 2) return;
+  if (words.size() < 20000) threads = 1;
+  const int passes = (total + 10) / 11;
+  const int width = (total + passes - 1) / passes;
+  buffer<std::uint64_t> other(words.size());
+  for (int low = bits.low; low < bits.high; low += width) {
+    detail::scatter_by_digit(words, other, low, std::min(width, bits.high - low), threads, control);
+    std::swap(words, other);
+  }
+}
+
+}  // namespace aib::search
+
+// aib/search/box_tree.hpp
+
+namespace aib::search {
+inline namespace AIB_ISA {
+
+/// Sixteen points that follow each other on the curve, coordinates side by side.
+struct alignas(64) point_block {
+  static constexpr std::size_t size = 16;
+  float axis[3][size];
+};
+
+/// Boxes of eight children, coordinates side by side. A child that does not exist has an empty box,
+/// infinitely far from everything.
+struct alignas(32) box_node {
+  static constexpr std::size_t width = 8;
+  float low[3][width];
+  float high[3][width];
+};
+
+/// Points in the order of a curve, in blocks of 16, under a tree of boxes without pointers: node i
+/// of a level has the nodes (or, on level 0, the blocks) 8 i .. 8 i + 7 of the level below.
+///
+/// 18.2 bytes a point. Points must be finite and not empty.
+class box_tree {
+ public:
+  box_tree(std::span<const Eigen::Vector3f> points,
+           const curve& order,
+           unsigned threads = 0,
+           const control& control = {});
+
+  [[nodiscard]] std::size_t size() const { return index_.size(); }
+
+  /// The last block is filled up with its last point.
+  [[nodiscard]] std::span<const point_block> blocks() const { return blocks_.span(); }
+
+  /// Index of the point at a place on the curve.
+  [[nodiscard]] std::span<const std::uint32_t> index() const { return index_.span(); }
+
+  /// Curve key of the first point of each block.
+  [[nodiscard]] std::span<const std::uint64_t> keys() const { return keys_.span(); }
+
+  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  [[nodiscard]] std::span<const box_node> level(std::size_t l) const { return levels_[l].span(); }
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void fill_blocks(std::span<const Eigen::Vector3f> points,
+                   const buffer<std::uint64_t>& sorted,
+                   const curve& order,
+                   unsigned threads,
+                   const control& control);
+  void build_levels(unsigned threads, const control& control);
+
+  buffer<point_block> blocks_;
+  buffer<std::uint32_t> index_;
+  buffer<std::uint64_t> keys_;
+  std::vector<buffer<box_node>> levels_;
+};
+
+/// Key and index of each point in one word, sorted by key, then index.
+inline buffer<std::uint64_t> sort_along(std::span<const Eigen::Vector3f> points,
+                                        const curve& order,
+                                        unsigned threads,
+                                        const control& control) {
+  buffer<std::uint64_t> words(points.size());
+  for_each_chunk(points.size(), 1 << 16, threads, control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      words[i] = order.key(points[i]) << order.index_bits | i;
+    }
+  });
+  radix_sort(words, {order.index_bits, order.index_bits + 3 * order.bits}, threads, control);
+  return words;
+}
+
+inline box_tree::box_tree(std::span<const Eigen::Vector3f> points,
+                          const curve& order,
+                          unsigned threads,
+                          const control& control) {
+  if (threads == 0) threads = available_threads();
+  const auto sorted = sort_along(points, order, threads, control);
+  fill_blocks(points, sorted, order, threads, control);
+  build_levels(threads, control);
+}
+
+inline void box_tree::fill_blocks(std::span<const Eigen::Vector3f> points,
+                                  const buffer<std::uint64_t>& sorted,
+                                  const curve& order,
+                                  unsigned threads,
+                                  const control& control) {
+  constexpr std::size_t size = point_block::size;
+  const std::size_t n = points.size();
+  const std::uint64_t index_mask = (std::uint64_t{1} << order.index_bits) - 1;
+  blocks_ = buffer<point_block>((n + size - 1) / size);
+  index_ = buffer<std::uint32_t>(n);
+  keys_ = buffer<std::uint64_t>(blocks_.size());
+  for_each_chunk(blocks_.size(), 4096, threads, control, [&](const chunk& c) {
+    for (std::size_t b = c.begin; b < c.end; ++b) {
+      keys_[b] = sorted[b * size] >> order.index_bits;
+      for (std::size_t j = 0; j < size; ++j) {
+        const std::size_t place = std::min(b * size + j, n - 1);
+        const auto i = static_cast<std::uint32_t>(sorted[place] & index_mask);
+        index_[place] = i;
+        for (int axis = 0; axis < 3; ++axis) blocks_[b].axis[axis][j] = points[i][axis];
+      }
+    }
+  });
+}
+
+/// The range of a whole block on one axis, or of the eight children of a node.
+inline std::pair<float, float> range_of(const point_block& block, int axis) {
+  const f32x8 a = f32x8::load(block.axis[axis]);
+  const f32x8 b = f32x8::load(block.axis[axis] + 8);
+  return {lowest(min(a, b)), highest(max(a, b))};
+}
+inline std::pair<float, float> range_of(const box_node& node, int axis) {
+  return {lowest(f32x8::load(node.low[axis])), highest(f32x8::load(node.high[axis]))};
+}
+
+/// The nodes above some blocks or nodes.
+template <class Child>
+buffer<box_node> boxes_above(std::span<const Child> children,
+                             unsigned threads,
+                             const control& control) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr std::size_t width = box_node::width;
+  buffer<box_node> nodes((children.size() + width - 1) / width);
+  for_each_chunk(nodes.size(), 4096, threads, control, [&](const chunk& c) {
+    for (std::size_t i = c.begin * width; i < c.end * width; ++i) {
+      box_node& node = nodes[i / width];
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] =
+            i < children.size() ? range_of(children[i], axis) : std::pair{infinity, -infinity};
+        node.low[axis][i % width] = low;
+        node.high[axis][i % width] = high;
+      }
+    }
+  });
+  return nodes;
+}
+
+inline void box_tree::build_levels(unsigned threads, const control& control) {
+  levels_.push_back(boxes_above(blocks(), threads, control));
+  while (levels_.back().size() > 1) {
+    levels_.push_back(boxes_above(levels_.back().span(), threads, control));
+  }
+}
+
+inline std::size_t box_tree::bytes() const {
+  std::size_t total = blocks_.size() * sizeof(point_block) + index_.size() * sizeof(std::uint32_t) +
+                      keys_.size() * sizeof(std::uint64_t);
+  for (const auto& level : levels_) total += level.size() * sizeof(box_node);
+  return total;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/nearest_one.hpp
+
+namespace aib::search {
+inline namespace AIB_ISA {
+
+/// Squared length in the one order of operations that all searches use: rounding is monotone, so a
+/// box never seems farther than a point in it, and pruning loses no nearest neighbour.
+inline f32x8 squared_length(f32x8 x, f32x8 y, f32x8 z) { return (x * x + y * y) + z * z; }
+
+/// Eight-fold a point.
+struct query {
+  f32x8 axis[3];
+
+  query(float x, float y, float z)
+      : axis{f32x8::broadcast(x), f32x8::broadcast(y), f32x8::broadcast(z)} {}
+};
+
+/// Squared distances from points in [low, high] (equal for a single point) to the eight boxes.
+inline f32x8 squared_distances(const f32x8* low, const f32x8* high, const box_node& node) {
+  f32x8 gap[3];
+  for (int k = 0; k < 3; ++k) {
+    const f32x8 before = f32x8::load(node.low[k]) - high[k];
+    const f32x8 behind = low[k] - f32x8::load(node.high[k]);
+    gap[k] = max(max(before, behind), f32x8::broadcast(0));
+  }
+  return squared_length(gap[0], gap[1], gap[2]);
+}
+
+/// Squared distances from a point to eight points of a block, from `first` on.
+inline f32x8 squared_distances(const query& q, const point_block& block, std::size_t first) {
+  return squared_length(q.axis[0] - f32x8::load(block.axis[0] + first),
+                        q.axis[1] - f32x8::load(block.axis[1] + first),
+                        q.axis[2] - f32x8::load(block.axis[2] + first));
+}
+
+/// A node or block that waits to be visited, and how far it is.
+struct pending_box {
+  float squared;
+  std::uint32_t level;  ///< of the box's children; `pending_box::block` for a block
+  std::uint32_t index;
+
+  static constexpr std::uint32_t block = ~0u;
+};
+
+/// Boxes that wait, the nearest child of the last visited node on top. Eight children a level and
+/// eleven levels (2^32 points) never fill it.
+class pending_boxes {
+ public:
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  pending_box pop() { return boxes_[--size_]; }
+  void push_root(const box_tree& tree) {
+    boxes_[size_++] = {0, static_cast<std::uint32_t>(tree.levels() - 1), 0};
+  }
+
+  /// The children of a node whose bits are set in `mask`, farthest first.
+  void push_children(const pending_box& node, f32x8 squared, unsigned mask) {
+    float distance[8];
+    squared.store(distance);
+    const std::size_t bottom = size_;
+    const std::uint32_t level = node.level == 0 ? pending_box::block : node.level - 1;
+    for (; mask != 0; mask &= mask - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
+      std::size_t place = size_++;
+      for (; place > bottom && boxes_[place - 1].squared < distance[lane]; --place) {
+        boxes_[place] = boxes_[place - 1];
+      }
+      boxes_[place] = {distance[lane], level, node.index * 8 + lane};
+    }
+  }
+
+ private:
+  pending_box boxes_[96];
+  std::size_t size_ = 0;
+};
+
+/// The smaller of `bound` and the squared distance from a point to its nearest neighbour.
+///
+/// near_block   a block to begin with; becomes the block of the neighbour where one was found
+inline float nearest_one(const box_tree& tree,
+                         const query& q,
+                         float bound,
+                         std::uint32_t& near_block) {
+  const auto visit = [&](std::uint32_t b) {
+    const point_block& block = tree.blocks()[b];
+    const float least = lowest(min(squared_distances(q, block, 0), squared_distances(q, block, 8)));
+    if (least < bound) {
+      bound = least;
+      near_block = b;
+    }
+  };
+  visit(near_block);
+  pending_boxes pending;
+  pending.push_root(tree);
+  while (!pending.empty()) {
+    const pending_box box = pending.pop();
+    if (!(box.squared < bound)) continue;
+    if (box.level == pending_box::block) {
+      visit(box.index);
+    } else {
+      const f32x8 d = squared_distances(q.axis, q.axis, tree.level(box.level)[box.index]);
+      pending.push_children(box, d, less(d, f32x8::broadcast(bound)));
+    }
+  }
+  return bound;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/nearest_packet.hpp
+
+namespace aib::search {
+inline namespace AIB_ISA {
+
+/// Sixteen queries, a lane each, and the squared distances known so far.
+struct packet {
+  static constexpr std::size_t size = 16;
+  f32x8 axis[3][2];
+  f32x8 best[2];
+
+  /// Takes the sixteen points of a block into account.
+  void visit(const point_block& block) {
+    for (std::size_t j = 0; j < point_block::size; ++j) {
+      const f32x8 x = f32x8::broadcast(block.axis[0][j]);
+      const f32x8 y = f32x8::broadcast(block.axis[1][j]);
+      const f32x8 z = f32x8::broadcast(block.axis[2][j]);
+      for (int v = 0; v < 2; ++v) {
+        best[v] = min(best[v], squared_length(axis[0][v] - x, axis[1][v] - y, axis[2][v] - z));
+      }
+    }
+  }
+};
+
+/// Nearest neighbours of up to 256 queries that follow each other on the curve. They share one walk
+/// through the tree, which lists the blocks that any of them may need; each packet then goes
+/// through the list. Queries that lie far from the cloud would make the list long for all: they are
+/// searched alone.
+class super_packet {
+ public:
+  static constexpr std::size_t packets = 16;
+  static constexpr std::size_t lanes = packets * packet::size;
+
+  super_packet(const box_tree& tree, float bound) : tree_(tree), bound_(bound) {}
+
+  /// The smaller of the bound and the squared distance of each query, in the order of the blocks.
+  ///
+  /// queries   1 .. 16 blocks
+  /// start     for each of them a block of the tree that is probably near
+  std::span<const float> search(std::span<const point_block> queries, const std::uint32_t* start);
+
+ private:
+  /// A lane is searched alone when its squared distance to the starting blocks is beyond this many
+  /// times the median; a walk that lists more blocks than the limit is given up for searches alone.
+  static constexpr float stray_factor = 25;
+  static constexpr std::size_t most_candidates = 512;
+
+  void load(std::span<const point_block> queries);
+  void visit_start(const std::uint32_t* start);
+  void search_strays(std::uint32_t near_block);
+  bool list_candidates();
+  void add_candidate(const box_node& node, std::size_t lane, std::uint32_t block);
+  void pad_candidates();
+  void visit_candidates(std::size_t packet_index, std::uint32_t start);
+  void search_all_alone(std::uint32_t near_block);
+
+  [[nodiscard]] float stray_threshold() const;
+  [[nodiscard]] query lane(std::size_t i) const { return {axis_[0][i], axis_[1][i], axis_[2][i]}; }
+  [[nodiscard]] packet load_packet(std::size_t p) const;
+  void store_best(std::size_t p, const packet& q);
+  [[nodiscard]] static bool may_improve(const packet& q,
+                                        const float (&low)[3],
+                                        const float (&high)[3]);
+
+  const box_tree& tree_;
+  float bound_;
+  std::size_t count_ = 0;  ///< lanes in use, a multiple of 16
+  alignas(64) float axis_[3][lanes];
+  alignas(64) float best_[lanes];
+  float found_alone_[lanes];
+  bool stray_[lanes];
+
+  std::size_t candidates_ = 0;
+  alignas(64) float low_[3][most_candidates + 16];
+  alignas(64) float high_[3][most_candidates + 16];
+  std::uint32_t block_[most_candidates + 16];
+};
+
+/// The box of some lanes, each bound in all eight lanes.
+struct lane_box {
+  f32x8 low[3];
+  f32x8 high[3];
+};
+
+inline std::span<const float> super_packet::search(std::span<const point_block> queries,
+                                                   const std::uint32_t* start) {
+  load(queries);
+  visit_start(start);
+  search_strays(start[0]);
+  if (list_candidates()) {
+    for (std::size_t p = 0; p < queries.size(); ++p) visit_candidates(p, start[p]);
+  } else {
+    search_all_alone(start[0]);
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (stray_[i]) best_[i] = found_alone_[i];
+  }
+  return {best_, count_};
+}
+
+inline void super_packet::load(std::span<const point_block> queries) {
+  count_ = queries.size() * packet::size;
+  for (std::size_t p = 0; p < queries.size(); ++p) {
+    for (int k = 0; k < 3; ++k) {
+      std::copy_n(queries[p].axis[k], packet::size, axis_[k] + p * packet::size);
+    }
+  }
+}
+
+inline packet super_packet::load_packet(std::size_t p) const {
+  packet q;
+  for (std::size_t v = 0; v < 2; ++v) {
+    const std::size_t lane = p * packet::size + 8 * v;
+    for (int k = 0; k < 3; ++k) q.axis[k][v] = f32x8::load(axis_[k] + lane);
+    q.best[v] = f32x8::load(best_ + lane);
+  }
+  return q;
+}
+
+inline void super_packet::store_best(std::size_t p, const packet& q) {
+  for (std::size_t v = 0; v < 2; ++v) q.best[v].store(best_ + p * packet::size + 8 * v);
+}
+
+/// Each packet looks at the block that the curve leads it to and at its two neighbours.
+inline void super_packet::visit_start(const std::uint32_t* start) {
+  const auto last = static_cast<std::uint32_t>(tree_.blocks().size() - 1);
+  std::fill_n(best_, count_, bound_);
+  for (std::size_t p = 0; p < count_ / packet::size; ++p) {
+    packet q = load_packet(p);
+    const std::uint32_t from = start[p] > 0 ? start[p] - 1 : 0;
+    const std::uint32_t to = std::min(last, start[p] + 1);
+    for (std::uint32_t b = from; b <= to; ++b) q.visit(tree_.blocks()[b]);
+    store_best(p, q);
+  }
+}
+
+inline float super_packet::stray_threshold() const {
+  float sample[lanes / 5 + 1];
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < count_; i += 5) sample[n++] = best_[i];
+  std::nth_element(sample, sample + n / 2, sample + n);
+  return sample[n / 2] * stray_factor;
+}
+
+/// Strays are searched alone and then hidden behind a neighbour that is none, so that the box of
+/// the queries stays tight.
+inline void super_packet::search_strays(std::uint32_t near_block) {
+  const float threshold = stray_threshold();
+  std::size_t keeper = count_;
+  for (std::size_t i = count_; i-- > 0;) {
+    stray_[i] = best_[i] > threshold;
+    if (!stray_[i]) keeper = i;
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!stray_[i]) {
+      keeper = i;
+      continue;
+    }
+    found_alone_[i] = nearest_one(tree_, lane(i), best_[i], near_block);
+    for (auto& axis : axis_) axis[i] = axis[keeper];
+    best_[i] = best_[keeper];
+  }
+}
+
+/// The box of n lanes (a multiple of 8).
+inline lane_box box_of(const float* x, const float* y, const float* z, std::size_t n) {
+  lane_box box;
+  const float* axis[3] = {x, y, z};
+  for (int k = 0; k < 3; ++k) {
+    f32x8 low = f32x8::load(axis[k]);
+    f32x8 high = low;
+    for (std::size_t i = 8; i < n; i += 8) {
+      const f32x8 a = f32x8::load(axis[k] + i);
+      low = min(low, a);
+      high = max(high, a);
+    }
+    box.low[k] = f32x8::broadcast(lowest(low));
+    box.high[k] = f32x8::broadcast(highest(high));
+  }
+  return box;
+}
+
+/// Lists the blocks nearer to the box of all queries than the worst of them needs. False where
+/// there are too many.
+inline bool super_packet::list_candidates() {
+  const lane_box box = box_of(axis_[0], axis_[1], axis_[2], count_);
+  const f32x8 worst = f32x8::broadcast(*std::max_element(best_, best_ + count_));
+  candidates_ = 0;
+  struct place {
+    std::uint32_t level, index;
+  } pending[96];
+  std::size_t size = 0;
+  pending[size++] = {static_cast<std::uint32_t>(tree_.levels() - 1), 0};
+  while (size > 0) {
+    const place at = pending[--size];
+    const box_node& node = tree_.level(at.level)[at.index];
+    unsigned mask = less(squared_distances(box.low, box.high, node), worst);
+    if (at.level == 0 && candidates_ > most_candidates) return false;
+    for (; mask != 0; mask &= mask - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(mask));
+      if (at.level == 0) {
+        add_candidate(node, child, at.index * 8 + child);
+      } else {
+        pending[size++] = {at.level - 1, at.index * 8 + child};
+      }
+    }
+  }
+  pad_candidates();
+  return true;
+}
+
+inline void super_packet::add_candidate(const box_node& node,
+                                        std::size_t lane,
+                                        std::uint32_t block) {
+  for (int k = 0; k < 3; ++k) {
+    low_[k][candidates_] = node.low[k][lane];
+    high_[k][candidates_] = node.high[k][lane];
+  }
+  block_[candidates_++] = block;
+}
+
+/// Fills the list up to a multiple of eight with boxes that nobody needs.
+inline void super_packet::pad_candidates() {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (; candidates_ % 8 != 0; ++candidates_) {
+    for (int k = 0; k < 3; ++k) {
+      low_[k][candidates_] = infinity;
+      high_[k][candidates_] = -infinity;
+    }
+  }
+}
+
+/// Whether a box is nearer to any of the sixteen queries than what that one has.
+inline bool super_packet::may_improve(const packet& q,
+                                      const float (&low)[3],
+                                      const float (&high)[3]) {
+  unsigned any = 0;
+  for (int v = 0; v < 2; ++v) {
+    f32x8 gap[3];
+    for (int k = 0; k < 3; ++k) {
+      const f32x8 before = f32x8::broadcast(low[k]) - q.axis[k][v];
+      const f32x8 behind = q.axis[k][v] - f32x8::broadcast(high[k]);
+      gap[k] = max(max(before, behind), f32x8::broadcast(0));
+    }
+    any |= less(squared_length(gap[0], gap[1], gap[2]), q.best[v]);
+  }
+  return any != 0;
+}
+
+inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
+  const std::size_t first = p * packet::size;
+  const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
+  packet q = load_packet(p);
+  const f32x8 worst = f32x8::broadcast(highest(max(q.best[0], q.best[1])));
+  for (std::size_t i = 0; i < candidates_; i += 8) {
+    f32x8 gap[3];
+    for (int k = 0; k < 3; ++k) {
+      const f32x8 before = f32x8::load(low_[k] + i) - box.high[k];
+      const f32x8 behind = box.low[k] - f32x8::load(high_[k] + i);
+      gap[k] = max(max(before, behind), f32x8::broadcast(0));
+    }
+    unsigned mask = less(squared_length(gap[0], gap[1], gap[2]), worst);
+    for (; mask != 0; mask &= mask - 1) {
+      const std::size_t c = i + static_cast<std::size_t>(std::countr_zero(mask));
+      const bool seen = block_[c] + 1 >= start && block_[c] <= start + 1;
+      if (!seen && may_improve(q, {low_[0][c], low_[1][c], low_[2][c]},
+                               {high_[0][c], high_[1][c], high_[2][c]})) {
+        q.visit(tree_.blocks()[block_[c]]);
+      }
+    }
+  }
+  store_best(p, q);
+}
+
+inline void super_packet::search_all_alone(std::uint32_t near_block) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!stray_[i]) best_[i] = nearest_one(tree_, lane(i), best_[i], near_block);
+  }
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/nearest.hpp
+
+namespace aib::search {
+inline namespace AIB_ISA {
+
+struct nearest_options {
+  /// Squared distances are searched below this bound only; a query without such a neighbour gets
+  /// the bound itself.
+  float squared_bound = std::numeric_limits<float>::infinity();
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Squared distance from each point of `queries` to its nearest neighbour in `targets`, in the
+/// order in which the points of `queries` were given.
+///
+/// Bit-equal to the minimum of (dx dx + dy dy) + dz dz in float over all targets, for any
+/// instruction set and number of threads. Both trees are built along one curve (`common_curve`).
+///
+/// Source of the idea: all-nearest-neighbour search by dual traversal, Gray and Moore, "N-body
+/// problems in statistical learning", NIPS 2000.
+std::vector<float> nearest_squared(const box_tree& queries,
+                                   const box_tree& targets,
+                                   const nearest_options& options = {});
+
+/// For each block of queries the block of targets in which its middle lies on the curve: the two
+/// trees are merged like sorted lists.
+class curve_merge {
+ public:
+  curve_merge(const box_tree& queries, const box_tree& targets, std::size_t first_block)
+      : queries_(queries.keys()), targets_(targets.keys()) {
+    const auto after = std::upper_bound(targets_.begin(), targets_.end(), queries_[first_block]);
+    place_ = after == targets_.begin() ? 0 : static_cast<std::size_t>(after - targets_.begin()) - 1;
+  }
+
+  /// Blocks are asked for in order.
+  std::uint32_t start_of(std::size_t block) {
+    std::uint64_t key = queries_[block];
+    if (block + 1 < queries_.size()) key += (queries_[block + 1] - key) / 2;
+    while (place_ + 1 < targets_.size() && targets_[place_ + 1] <= key) ++place_;
+    return static_cast<std::uint32_t>(place_);
+  }
+
+ private:
+  std::span<const std::uint64_t> queries_, targets_;
+  std::size_t place_ = 0;
+};
+
+inline std::vector<float> nearest_squared(const box_tree& queries,
+                                          const box_tree& targets,
+                                          const nearest_options& options) {
+  constexpr std::size_t group = super_packet::packets;
+  std::vector<float> squared(queries.size());
+  const std::size_t n_blocks = queries.blocks().size();
+  for_each_chunk(n_blocks, 32 * group, options.threads, options.control, [&](const chunk& c) {
+    const auto search = std::make_unique<super_packet>(targets, options.squared_bound);
+    curve_merge merge(queries, targets, c.begin);
+    for (std::size_t first = c.begin; first < c.end; first += group) {
+      const std::size_t count = std::min(group, c.end - first);
+      std::uint32_t start[group] = {};
+      for (std::size_t b = 0; b < count; ++b) start[b] = merge.start_of(first + b);
+      const auto found = search->search(queries.blocks().subspan(first, count), start);
+      const auto index = queries.index().subspan(first * point_block::size);
+      const std::size_t used = std::min(found.size(), index.size());
+      for (std::size_t i = 0; i < used; ++i) squared[index[i]] = found[i];
+    }
+  });
+  return squared;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
 // aib/depth/depth_map.hpp
 
 namespace aib::depth {
@@ -1305,6 +2382,958 @@ template <class Scalar>
 }
 
 }  // namespace aib::depth
+
+// aib/depth/error_sums.hpp
+
+namespace aib::depth {
+
+/// `scale * depth + shift`.
+struct affine {
+  double scale = 1;
+  double shift = 0;
+
+  friend bool operator==(const affine&, const affine&) = default;
+};
+
+/// Which pixels count, and what happens to an estimate before it is compared, in this order: a
+/// reference counts strictly between `min` and `max`; an estimate where it is finite and > 0; it is
+/// transformed, clamped, and counts where the outcome is finite and > 0.
+struct pixel_rules {
+  double min = 0;
+  double max = std::numeric_limits<double>::infinity();
+  affine transform = {};  ///< reference_from_estimate
+  double clamp_min = 0;
+  double clamp_max = std::numeric_limits<double>::infinity();
+  double clamp_log = 0;  ///< least estimate within logarithms, other errors take it as it is
+};
+
+/// What the depth errors of a set of pixels are made of. Mergeable: `a += b`.
+///
+/// The log ratio ln(reference / estimate) is kept as moments, so that a small spread about a large
+/// mean survives.
+struct error_sums {
+  stats::moments log_ratio = {};
+  std::uint64_t n_reference = 0;                  ///< pixels with a valid reference
+  std::uint64_t n_estimate = 0;                   ///< pixels with a valid estimate
+  double abs_log = 0;                             ///< sum |ln(reference / estimate)|
+  double abs_difference = 0;                      ///< sum |estimate - reference|
+  double squared_difference = 0;                  ///< sum (estimate - reference)^2
+  double abs_relative = 0;                        ///< sum |estimate - reference| / reference
+  double squared_relative = 0;                    ///< sum (estimate - reference)^2 / reference
+  double squared_inverse = 0;                     ///< sum (1 / estimate - 1 / reference)^2
+  std::array<std::uint64_t, 3> below_delta = {};  ///< ratios strictly below 1.25, 1.25^2, 1.25^3
+
+  error_sums& operator+=(const error_sums& other);
+};
+
+inline error_sums& error_sums::operator+=(const error_sums& other) {
+  log_ratio += other.log_ratio;
+  n_reference += other.n_reference;
+  n_estimate += other.n_estimate;
+  abs_log += other.abs_log;
+  abs_difference += other.abs_difference;
+  squared_difference += other.squared_difference;
+  abs_relative += other.abs_relative;
+  squared_relative += other.squared_relative;
+  squared_inverse += other.squared_inverse;
+  for (std::size_t k = 0; k < 3; ++k) below_delta[k] += other.below_delta[k];
+  return *this;
+}
+
+/// Throws argument_error unless both maps, and the mask where there is one, have one size.
+template <class Estimate, class Reference>
+void check_sizes(std::string_view function,
+                 raster::view<const Estimate> estimate,
+                 raster::view<const Reference> reference,
+                 raster::view<const std::uint8_t> mask = {}) {
+  const auto fail = [&](std::string_view thing, std::size_t width, std::size_t height) {
+    throw argument_error(message(function, ": the estimate is ", estimate.width, "x",
+                                 estimate.height, ", the ", thing, " ", width, "x", height,
+                                 ": downsample one to the other first"));
+  };
+  if (estimate.width != reference.width || estimate.height != reference.height)
+    fail("reference", reference.width, reference.height);
+  if (mask.data && (estimate.width != mask.width || estimate.height != mask.height))
+    fail("mask", mask.width, mask.height);
+}
+
+namespace detail {
+
+inline namespace AIB_ISA {
+
+/// term(0) + ... + term(size - 1), added in a tree of halves.
+template <std::size_t size, class Term>
+double tree_sum(const Term& term) {
+  if constexpr (size == 1) {
+    return term(0);
+  } else if constexpr (size > 32) {
+    return tree_sum<size / 2>([&](std::size_t i) { return term(i) + term(i + size / 2); });
+  } else {
+    double half[size / 2];
+    for (std::size_t i = 0; i < size / 2; ++i) half[i] = term(i) + term(i + size / 2);
+    return tree_sum<size / 2>([&](std::size_t i) { return half[i]; });
+  }
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Collects pixels and adds them up block by block. The loops run over whole blocks of doubles,
+/// have no branch and sum in a fixed tree: compilers make vector code of them, and every
+/// instruction set gives the same bits.
+class error_block {
+ public:
+  static constexpr std::size_t size = 256;
+
+  explicit error_block(const pixel_rules& rules) : rules_(rules) {}
+
+  /// Adds n pixels; `mask` is null or n bytes, of which 0 leaves a pixel out.
+  template <class Estimate, class Reference>
+  void add(const Estimate* estimate,
+           const Reference* reference,
+           const std::uint8_t* mask,
+           std::size_t n);
+
+  /// The sums of all pixels so far.
+  error_sums result();
+
+ private:
+  struct column {
+    alignas(64) double values[size];
+    double& operator[](std::size_t i) { return values[i]; }
+    const double& operator[](std::size_t i) const { return values[i]; }
+  };
+
+  template <class Scalar>
+  void take(column& to, const Scalar* from, const std::uint8_t* mask, std::size_t n) const;
+  void flush();
+  void select();
+  [[nodiscard]] error_sums errors();
+
+  pixel_rules rules_;
+  error_sums total_;
+  std::size_t filled_ = 0;
+  column estimate_;
+  column reference_;
+  column weight_;  ///< 1 where the pixel counts, else 0
+  column log_ratio_;
+  column per_estimate_;
+  column per_reference_;
+};
+
+template <class Estimate, class Reference>
+void error_block::add(const Estimate* estimate,
+                      const Reference* reference,
+                      const std::uint8_t* mask,
+                      std::size_t n) {
+  while (n > 0) {
+    const std::size_t k = std::min(n, size - filled_);
+    take(estimate_, estimate, mask, k);
+    take(reference_, reference, mask, k);
+    filled_ += k;
+    if (filled_ == size) flush();
+    estimate += k;
+    reference += k;
+    if (mask) mask += k;
+    n -= k;
+  }
+}
+
+template <class Scalar>
+void error_block::take(column& to,
+                       const Scalar* from,
+                       const std::uint8_t* mask,
+                       std::size_t n) const {
+  double* const at = to.values + filled_;
+  for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<double>(from[i]);
+  if (!mask) return;
+  for (std::size_t i = 0; i < n; ++i) at[i] = mask[i] ? at[i] : 0.0;
+}
+
+inline error_sums error_block::result() {
+  if (filled_ > 0) flush();
+  return total_;
+}
+
+inline void error_block::flush() {
+  for (std::size_t i = filled_; i < size; ++i) estimate_[i] = reference_[i] = 0;
+  filled_ = 0;
+  select();
+  total_ += errors();
+}
+
+/// Applies the rules. A pixel that does not count becomes estimate = reference = 1: all its errors
+/// are 0.
+inline void error_block::select() {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const pixel_rules rules = rules_;
+  column has_estimate, has_reference;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double raw = estimate_[i];
+    const double r = reference_[i];
+    double e = rules.transform.scale * raw + rules.transform.shift;
+    e = e < rules.clamp_min ? rules.clamp_min : e;
+    e = e > rules.clamp_max ? rules.clamp_max : e;
+    const double raw_valid = (raw > 0 ? 1.0 : 0.0) * (raw < inf ? 1.0 : 0.0);
+    const double in_front = (e > 0 ? 1.0 : 0.0) * (e < inf ? 1.0 : 0.0);
+    has_estimate[i] = raw_valid * in_front;
+    has_reference[i] = (r > rules.min ? 1.0 : 0.0) * (r < rules.max ? 1.0 : 0.0);
+    weight_[i] = has_estimate[i] * has_reference[i];
+    estimate_[i] = weight_[i] > 0 ? e : 1.0;
+    reference_[i] = weight_[i] > 0 ? r : 1.0;
+  }
+  const auto count = [](const column& c) {
+    return static_cast<std::uint64_t>(detail::tree_sum<size>([&](std::size_t i) { return c[i]; }));
+  };
+  total_.n_estimate += count(has_estimate);
+  total_.n_reference += count(has_reference);
+}
+
+inline error_sums error_block::errors() {
+  const double clamp_log = rules_.clamp_log;
+  column larger, smaller;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double in_log = estimate_[i] < clamp_log ? clamp_log : estimate_[i];
+    log_ratio_[i] = math::log_ratio(reference_[i], in_log) * weight_[i];
+    per_estimate_[i] = 1 / estimate_[i];
+    per_reference_[i] = 1 / reference_[i];
+    larger[i] = estimate_[i] > reference_[i] ? estimate_[i] : reference_[i];
+    smaller[i] = estimate_[i] > reference_[i] ? reference_[i] : estimate_[i];
+  }
+  const auto sum = [](const auto& term) { return detail::tree_sum<size>(term); };
+  const column& e = estimate_;
+  const column& r = reference_;
+  const double n = sum([&](std::size_t i) { return weight_[i]; });
+  const double mean = n > 0 ? sum([&](std::size_t i) { return log_ratio_[i]; }) / n : 0;
+  const double squares = sum([&](std::size_t i) {
+    const double deviation = (log_ratio_[i] - mean) * weight_[i];
+    return deviation * deviation;
+  });
+  // Without division: 1.25^k is exact in binary, and so is its product with a float.
+  const auto below = [&](double delta) {
+    column is_below;
+    for (std::size_t i = 0; i < size; ++i) is_below[i] = larger[i] < delta * smaller[i] ? 1.0 : 0.0;
+    const double count = sum([&](std::size_t i) { return is_below[i] * weight_[i]; });
+    return static_cast<std::uint64_t>(count);
+  };
+  return {
+      .log_ratio = stats::moments::from(static_cast<std::uint64_t>(n), mean, squares),
+      .abs_log = sum([&](std::size_t i) { return std::abs(log_ratio_[i]); }),
+      .abs_difference = sum([&](std::size_t i) { return std::abs(e[i] - r[i]); }),
+      .squared_difference = sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]); }),
+      .abs_relative = sum([&](std::size_t i) { return std::abs(e[i] - r[i]) * per_reference_[i]; }),
+      .squared_relative =
+          sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]) * per_reference_[i]; }),
+      .squared_inverse = sum([&](std::size_t i) {
+        const double difference = per_estimate_[i] - per_reference_[i];
+        return difference * difference;
+      }),
+      .below_delta = {below(1.25), below(1.5625), below(1.953125)},
+  };
+}
+
+/// The sums over all pixels of a frame after one transform; nothing is fitted. Bit-identical for
+/// any number of threads and instruction set. Throws argument_error if the sizes differ.
+template <class Estimate, class Reference>
+error_sums sum_errors(raster::view<const Estimate> estimate,
+                      raster::view<const Reference> reference,
+                      const pixel_rules& rules,
+                      raster::view<const std::uint8_t> mask = {},
+                      unsigned threads = 1) {
+  check_sizes("depth::errors", estimate, reference, mask);
+  constexpr std::size_t pixels_a_chunk = 1 << 16;
+  const std::size_t rows = estimate.width ? 1 + pixels_a_chunk / estimate.width : 1;
+  const auto sums_of = [&](const chunk& c) {
+    error_block block(rules);
+    for (std::size_t y = c.begin; y < c.end; ++y) {
+      block.add(estimate.row(y).data(), reference.row(y).data(),
+                mask.data ? mask.row(y).data() : nullptr, estimate.width);
+    }
+    return block.result();
+  };
+  const auto combine = [](error_sums total, const error_sums& part) { return total += part; };
+  return reduce_chunks(estimate.height, rows, threads, {}, error_sums{}, sums_of, combine);
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::depth
+
+// aib/depth/fit.hpp
+
+namespace aib::depth {
+
+/// How the scale of an estimate, and its shift, follow from the pixels valid in both maps.
+enum class alignment {
+  none,          ///< the depths as they are
+  median,        ///< median reference / median estimate, numpy's median
+  median_lower,  ///< the same with the lower of two middle values, torch's median
+  scale,         ///< least squares: sum er / sum ee
+  scale_l1,      ///< least absolute differences by ten reweighted steps, as CUT3R has it
+  scale_shift,   ///< least squares in scale and shift
+  log,           ///< exp of the mean log ratio: the scale that srmse is blind to
+};
+
+/// Fits the scale (and shift) that takes estimates to references, over one frame, a batch or a
+/// sequence: `add` every frame, then `result`. Fitters of parts merge by `a += b`.
+///
+/// The medians and scale_l1 keep every valid pair of pixels, 16 bytes each; the others sums alone.
+class fitter {
+ public:
+  /// Only the validity of `rules` is used: min and max of the reference.
+  explicit fitter(alignment kind, const pixel_rules& rules = {}) : kind_(kind), rules_(rules) {}
+
+  /// Throws argument_error if the sizes differ.
+  template <class Estimate, class Reference>
+  void add(raster::view<const Estimate> estimate,
+           raster::view<const Reference> reference,
+           raster::view<const std::uint8_t> mask = {});
+
+  fitter& operator+=(const fitter& other);
+
+  /// Pixels valid in both maps, 0 for alignment::none.
+  [[nodiscard]] std::uint64_t n_valid() const;
+
+  /// Throws undefined_error if no pixel was valid in both, or if every estimate is the same while a
+  /// shift is asked for. Identity for alignment::none.
+  [[nodiscard]] affine result() const;
+
+ private:
+  /// Means, and sums of products of deviations from them.
+  struct pair_moments {
+    double n = 0;
+    double mean_estimate = 0;
+    double mean_reference = 0;
+    double estimate_estimate = 0;
+    double estimate_reference = 0;
+
+    pair_moments& operator+=(const pair_moments& other);
+  };
+
+  [[nodiscard]] bool counts(double estimate, double reference) const {
+    return estimate > 0 && std::isfinite(estimate) && reference > rules_.min &&
+           reference < rules_.max;
+  }
+  template <class Estimate, class Reference>
+  void add_row(std::span<const Estimate> estimate,
+               std::span<const Reference> reference,
+               const std::uint8_t* mask);
+  [[nodiscard]] bool keeps_pairs() const {
+    return kind_ == alignment::median || kind_ == alignment::median_lower ||
+           kind_ == alignment::scale_l1;
+  }
+  [[nodiscard]] affine median() const;
+  [[nodiscard]] affine least_absolute() const;
+  [[nodiscard]] affine least_squares() const;
+
+  alignment kind_;
+  pixel_rules rules_;
+  stats::moments log_ratio_;
+  pair_moments pairs_;
+  std::vector<double> estimates_;
+  std::vector<double> references_;
+};
+
+template <class Estimate, class Reference>
+void fitter::add(raster::view<const Estimate> estimate,
+                 raster::view<const Reference> reference,
+                 raster::view<const std::uint8_t> mask) {
+  check_sizes("depth::fitter", estimate, reference, mask);
+  if (kind_ == alignment::log) {
+    const pixel_rules valid = {.min = rules_.min, .max = rules_.max};
+    log_ratio_ += sum_errors(estimate, reference, valid, mask).log_ratio;
+  } else if (kind_ != alignment::none) {
+    for (std::size_t y = 0; y < estimate.height; ++y)
+      add_row(estimate.row(y), reference.row(y), mask.data ? mask.row(y).data() : nullptr);
+  }
+}
+
+template <class Estimate, class Reference>
+void fitter::add_row(std::span<const Estimate> estimate,
+                     std::span<const Reference> reference,
+                     const std::uint8_t* mask) {
+  pair_moments row;
+  // Sums about the first pair of the row, so that no digits are lost to a large mean.
+  double first_e = 0, first_r = 0, sum_e = 0, sum_r = 0, sum_ee = 0, sum_er = 0;
+  for (std::size_t x = 0; x < estimate.size(); ++x) {
+    const auto e = static_cast<double>(estimate[x]);
+    const auto r = static_cast<double>(reference[x]);
+    if ((mask && mask[x] == 0) || !counts(e, r)) continue;
+    if (keeps_pairs()) {
+      estimates_.push_back(e);
+      references_.push_back(r);
+      continue;
+    }
+    if (row.n == 0) {
+      first_e = e;
+      first_r = r;
+    }
+    ++row.n;
+    sum_e += e - first_e;
+    sum_r += r - first_r;
+    sum_ee += (e - first_e) * (e - first_e);
+    sum_er += (e - first_e) * (r - first_r);
+  }
+  if (row.n == 0) return;
+  row.mean_estimate = first_e + sum_e / row.n;
+  row.mean_reference = first_r + sum_r / row.n;
+  row.estimate_estimate = sum_ee - sum_e * sum_e / row.n;
+  row.estimate_reference = sum_er - sum_e * sum_r / row.n;
+  pairs_ += row;
+}
+
+inline fitter::pair_moments& fitter::pair_moments::operator+=(const pair_moments& other) {
+  if (other.n == 0) return *this;
+  const double share = other.n / (n + other.n);
+  const double apart_e = other.mean_estimate - mean_estimate;
+  const double apart_r = other.mean_reference - mean_reference;
+  estimate_estimate += other.estimate_estimate + apart_e * apart_e * n * share;
+  estimate_reference += other.estimate_reference + apart_e * apart_r * n * share;
+  mean_estimate += apart_e * share;
+  mean_reference += apart_r * share;
+  n += other.n;
+  return *this;
+}
+
+inline fitter& fitter::operator+=(const fitter& other) {
+  if (other.kind_ != kind_) throw argument_error("depth::fitter: merged fits differ in kind");
+  log_ratio_ += other.log_ratio_;
+  pairs_ += other.pairs_;
+  estimates_.insert(estimates_.end(), other.estimates_.begin(), other.estimates_.end());
+  references_.insert(references_.end(), other.references_.begin(), other.references_.end());
+  return *this;
+}
+
+inline std::uint64_t fitter::n_valid() const {
+  return log_ratio_.count() + static_cast<std::uint64_t>(pairs_.n) + estimates_.size();
+}
+
+inline affine fitter::result() const {
+  if (kind_ == alignment::none) return {};
+  if (n_valid() == 0)
+    throw undefined_error("depth::fitter: no pixel is valid in estimate and reference");
+  switch (kind_) {
+    case alignment::median:
+    case alignment::median_lower:
+      return median();
+    case alignment::scale_l1:
+      return least_absolute();
+    case alignment::log:
+      return {std::exp(log_ratio_.mean()), 0};
+    default:
+      return least_squares();
+  }
+}
+
+inline affine fitter::median() const {
+  const auto rule =
+      kind_ == alignment::median ? stats::quantile_rule::midpoint : stats::quantile_rule::lower;
+  const std::span<const double> e = estimates_, r = references_;
+  return {stats::quantile(r, 0.5, rule) / stats::quantile(e, 0.5, rule), 0};
+}
+
+/// Weiszfeld's reweighted least squares, started at the ratio of the means and stopped after ten
+/// steps: close to the least absolute differences, and the number CUT3R and pi3 report.
+inline affine fitter::least_absolute() const {
+  constexpr int steps = 10;
+  constexpr double least_residual = 1e-8;
+  double sum_estimate = 0, sum_reference = 0;
+  for (const double e : estimates_) sum_estimate += e;
+  for (const double r : references_) sum_reference += r;
+  double scale = sum_reference / sum_estimate;
+  for (int step = 0; step < steps; ++step) {
+    double estimate_reference = 0, estimate_estimate = 0;
+    for (std::size_t i = 0; i < estimates_.size(); ++i) {
+      const double e = estimates_[i], r = references_[i];
+      const double weight = 1 / (std::abs(scale * e - r) + least_residual);
+      estimate_reference += weight * e * r;
+      estimate_estimate += weight * e * e;
+    }
+    scale = estimate_reference / estimate_estimate;
+  }
+  return {scale, 0};
+}
+
+inline affine fitter::least_squares() const {
+  const pair_moments& p = pairs_;
+  if (kind_ == alignment::scale) {
+    return {(p.estimate_reference + p.n * p.mean_estimate * p.mean_reference) /
+                (p.estimate_estimate + p.n * p.mean_estimate * p.mean_estimate),
+            0};
+  }
+  if (!(p.estimate_estimate > 0)) {
+    throw undefined_error(message("depth::fitter: scale and shift of ", n_valid(),
+                                  " pixels with one and the same estimate"));
+  }
+  const double scale = p.estimate_reference / p.estimate_estimate;
+  return {scale, p.mean_reference - scale * p.mean_estimate};
+}
+
+}  // namespace aib::depth
+
+// aib/depth/errors.hpp
+
+namespace aib::depth {
+
+/// See pixel_rules for the order of the steps and for `clamp_log`.
+struct error_options {
+  alignment align = alignment::none;                     ///< fitted to this frame
+  double min = 0;                                        ///< a reference counts above it, exclusive
+  double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
+  raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  affine transform = {};  ///< of a batch or sequence (see fitter), where nothing is aligned here
+  double clamp_min = 0;   ///< smaller estimates become this
+  double clamp_max = std::numeric_limits<double>::infinity();  ///< larger ones this
+  double clamp_log = 0;                                        ///< the same in logarithms alone
+  unsigned threads = 1;  ///< 0: all. A frame takes milliseconds: give threads to the frames
+};
+
+/// Errors of an estimated depth map over the V pixels valid in estimate and reference;
+/// d = ln(reference / estimate), lengths in the unit of the maps. `scale` and `shift` took the
+/// estimate to the reference.
+struct error_summary {
+  double srmse;        ///< mean (d - mean d)^2, the formula of the paper: no root
+  double si_log_rmse;  ///< its root
+  double silog;        ///< 100 times that root, KITTI's
+  double abs_rel;      ///< mean |e - r| / r
+  double sq_rel;       ///< mean (e - r)^2 / r
+  double rmse;         ///< root of mean (e - r)^2
+  double mae;          ///< mean |e - r|
+  double rmse_log;     ///< root of mean d^2
+  double log10;        ///< mean |log10 e - log10 r|
+  double irmse;        ///< root of mean (1 / e - 1 / r)^2
+  double delta1;       ///< share with max(e / r, r / e) < 1.25
+  double delta2;       ///< ... < 1.25^2
+  double delta3;       ///< ... < 1.25^3
+  double coverage;     ///< V / valid pixels of the reference
+  double scale;
+  double shift;
+  std::uint64_t n_valid;      ///< V
+  std::uint64_t n_reference;  ///< valid pixels of the reference
+  std::uint64_t n_estimate;   ///< valid pixels of the estimate
+};
+
+/// Name of a number of error_summary, and where it is.
+struct error_field {
+  std::string_view name;
+  double error_summary::*value;
+};
+
+/// Every number of error_summary but the counts, in its order: for tables and means.
+inline constexpr std::array<error_field, 16> error_fields{{
+    {"srmse", &error_summary::srmse},
+    {"si_log_rmse", &error_summary::si_log_rmse},
+    {"silog", &error_summary::silog},
+    {"abs_rel", &error_summary::abs_rel},
+    {"sq_rel", &error_summary::sq_rel},
+    {"rmse", &error_summary::rmse},
+    {"mae", &error_summary::mae},
+    {"rmse_log", &error_summary::rmse_log},
+    {"log10", &error_summary::log10},
+    {"irmse", &error_summary::irmse},
+    {"delta1", &error_summary::delta1},
+    {"delta2", &error_summary::delta2},
+    {"delta3", &error_summary::delta3},
+    {"coverage", &error_summary::coverage},
+    {"scale", &error_summary::scale},
+    {"shift", &error_summary::shift},
+}};
+
+/// The errors that sums amount to. Throws undefined_error, with the counts, if no pixel was valid.
+error_summary summarize(const error_sums& sums, const affine& transform = {});
+
+/// Errors of one depth map against its reference.
+///
+/// estimate   h x w, float or double
+/// reference  h x w, float or double
+///
+/// The caller downsamples: maps of two sizes are an argument_error that names both. Throws
+/// undefined_error, with the counts, if no pixel is valid in both.
+/// Source: Eigen, Puhrsch, Fergus, "Depth map prediction from a single image using a multi-scale
+/// deep network", NeurIPS 2014; silog and irmse: KITTI depth benchmark, Uhrig et al., 3DV 2017.
+template <class Estimate, class Reference>
+error_summary errors(raster::view<const Estimate> estimate,
+                     raster::view<const Reference> reference,
+                     const error_options& options = {});
+
+/// The part of the options that does not depend on the frame.
+[[nodiscard]] inline pixel_rules rules_of(const error_options& o) {
+  return {.min = o.min,
+          .max = o.max,
+          .transform = o.transform,
+          .clamp_min = o.clamp_min,
+          .clamp_max = o.clamp_max,
+          .clamp_log = o.clamp_log};
+}
+
+inline error_summary summarize(const error_sums& sums, const affine& transform) {
+  const std::uint64_t n_valid = sums.log_ratio.count();
+  if (n_valid == 0) {
+    throw undefined_error(message("depth::errors: no pixel is valid in both maps, ",
+                                  sums.n_estimate, " in the estimate, ", sums.n_reference,
+                                  " in the reference"));
+  }
+  const auto n = static_cast<double>(n_valid);
+  const auto share = [&](std::size_t k) { return static_cast<double>(sums.below_delta[k]) / n; };
+  return {
+      .srmse = sums.log_ratio.variance(),
+      .si_log_rmse = sums.log_ratio.deviation(),
+      .silog = 100 * sums.log_ratio.deviation(),
+      .abs_rel = sums.abs_relative / n,
+      .sq_rel = sums.squared_relative / n,
+      .rmse = std::sqrt(sums.squared_difference / n),
+      .mae = sums.abs_difference / n,
+      .rmse_log = std::sqrt(sums.log_ratio.mean_square()),
+      .log10 = sums.abs_log / n / std::numbers::ln10,
+      .irmse = std::sqrt(sums.squared_inverse / n),
+      .delta1 = share(0),
+      .delta2 = share(1),
+      .delta3 = share(2),
+      .coverage = n / static_cast<double>(sums.n_reference),
+      .scale = transform.scale,
+      .shift = transform.shift,
+      .n_valid = n_valid,
+      .n_reference = sums.n_reference,
+      .n_estimate = sums.n_estimate,
+  };
+}
+
+/// What takes the estimates of a frame to its references: the fit that the options ask for, or
+/// their transform. Throws argument_error if they have both. A frame without a valid pixel has the
+/// identity.
+template <class Estimate, class Reference>
+affine frame_transform(raster::view<const Estimate> estimate,
+                       raster::view<const Reference> reference,
+                       const error_options& options) {
+  if (options.align == alignment::none) return options.transform;
+  if (options.transform != affine{}) {
+    throw argument_error("depth::errors: either `align` or `transform` expected, found both");
+  }
+  fitter fit(options.align, rules_of(options));
+  fit.add(estimate, reference, options.mask);
+  return fit.n_valid() ? fit.result() : affine{};
+}
+
+template <class Estimate, class Reference>
+error_summary errors(raster::view<const Estimate> estimate,
+                     raster::view<const Reference> reference,
+                     const error_options& options) {
+  pixel_rules rules = rules_of(options);
+  rules.transform = frame_transform(estimate, reference, options);
+  return summarize(sum_errors(estimate, reference, rules, options.mask, options.threads),
+                   rules.transform);
+}
+
+template <class Estimate, class Reference>
+error_summary errors(const basic_depth_map<Estimate>& estimate,
+                     const basic_depth_map<Reference>& reference,
+                     const error_options& options = {}) {
+  return errors(estimate.values.view(), reference.values.view(), options);
+}
+
+}  // namespace aib::depth
+
+// aib/depth/accumulate.hpp
+
+namespace aib::depth {
+
+/// What is kept of a frame: its sums, and its errors where it has a valid pixel.
+struct frame_record {
+  std::string name;
+  error_sums sums = {};
+  affine transform = {};
+  std::optional<error_summary> errors = {};
+};
+
+/// The errors of many frames, in both ways of taking them together.
+struct frames_summary {
+  /// Means over the frames that have a valid pixel; coverage over those that have a reference,
+  /// where a frame without a valid pixel counts as 0. Counts are totals.
+  error_summary mean;
+  /// Over all pixels as if they were one frame. `scale` and `shift` are the means of the frames.
+  error_summary pooled;
+  std::size_t n_frames;                ///< frames added
+  std::size_t n_defined;               ///< frames with a valid pixel
+  std::vector<std::string> undefined;  ///< names of the others
+};
+
+/// Errors of frames, one by one. Accumulators of parts merge by `a += b`, the frames of b after
+/// those of a: the result is that of one run in that order, to the last bit.
+class accumulator {
+ public:
+  /// The mask of the options is not used: each frame brings its own.
+  explicit accumulator(const error_options& options = {}) : options_(options) {}
+
+  /// Adds a frame; one without a valid pixel is kept as such. Throws argument_error if sizes
+  /// differ.
+  template <class Estimate, class Reference>
+  void add(std::string name,
+           raster::view<const Estimate> estimate,
+           raster::view<const Reference> reference,
+           raster::view<const std::uint8_t> mask = {});
+
+  accumulator& operator+=(const accumulator& other);
+
+  /// The frames in the order in which they were added.
+  [[nodiscard]] const std::vector<frame_record>& frames() const { return frames_; }
+
+  /// Throws undefined_error, with the counts, if no frame has a valid pixel.
+  [[nodiscard]] frames_summary result() const;
+
+ private:
+  [[nodiscard]] error_summary mean() const;
+
+  error_options options_;
+  std::vector<frame_record> frames_;
+};
+
+/// Indices of the frames, the largest value of `field` first; frames without a valid pixel last, in
+/// their order.
+[[nodiscard]] std::vector<std::size_t> worst_first(
+    const std::vector<frame_record>& frames, double error_summary::*field = &error_summary::srmse);
+
+/// A frame as a loader hands it over; an empty mask leaves nothing out.
+struct frame {
+  std::string name;
+  depth_map estimate;
+  depth_map reference;
+  raster::image<std::uint8_t> mask = {};
+};
+
+struct accumulate_options {
+  error_options errors = {};
+  unsigned threads = 0;  ///< 0: all; so many frames are in memory at a time
+  aib::control control = {};
+};
+
+/// Loads frames 0 .. n - 1 by `load(i) -> frame`, from several threads at a time, and accumulates
+/// them in order: the result does not depend on the number of threads. What `load` throws is thrown
+/// here.
+template <class Load>
+[[nodiscard]] accumulator accumulate(std::size_t n, const accumulate_options& options, Load load) {
+  const auto errors_of = [&](const chunk& c) {
+    accumulator one(options.errors);
+    frame f = load(c.begin);
+    one.add(std::move(f.name), std::as_const(f.estimate.values).view(),
+            std::as_const(f.reference.values).view(), std::as_const(f.mask).view());
+    return one;
+  };
+  const auto combine = [](accumulator total, const accumulator& part) { return total += part; };
+  return reduce_chunks(n, 1, options.threads, options.control, accumulator(options.errors),
+                       errors_of, combine);
+}
+
+template <class Estimate, class Reference>
+void accumulator::add(std::string name,
+                      raster::view<const Estimate> estimate,
+                      raster::view<const Reference> reference,
+                      raster::view<const std::uint8_t> mask) {
+  error_options options = options_;
+  options.mask = mask;
+  frame_record record{.name = std::move(name)};
+  record.transform = frame_transform(estimate, reference, options);
+  pixel_rules rules = rules_of(options);
+  rules.transform = record.transform;
+  record.sums = sum_errors(estimate, reference, rules, mask, options.threads);
+  if (record.sums.log_ratio.count() > 0) record.errors = summarize(record.sums, record.transform);
+  frames_.push_back(std::move(record));
+}
+
+inline accumulator& accumulator::operator+=(const accumulator& other) {
+  frames_.insert(frames_.end(), other.frames_.begin(), other.frames_.end());
+  return *this;
+}
+
+inline frames_summary accumulator::result() const {
+  error_sums total;
+  std::vector<std::string> undefined;
+  for (const frame_record& f : frames_) {
+    total += f.sums;
+    if (!f.errors) undefined.push_back(f.name);
+  }
+  if (undefined.size() == frames_.size()) {
+    throw undefined_error(message("depth::accumulator: none of ", frames_.size(),
+                                  " frames has a pixel that is valid in both maps, ",
+                                  total.n_estimate, " are in the estimates, ", total.n_reference,
+                                  " in the references"));
+  }
+  const error_summary means = mean();
+  return {.mean = means,
+          .pooled = summarize(total, {means.scale, means.shift}),
+          .n_frames = frames_.size(),
+          .n_defined = frames_.size() - undefined.size(),
+          .undefined = std::move(undefined)};
+}
+
+inline error_summary accumulator::mean() const {
+  error_summary total{};
+  double n_defined = 0, n_reference = 0;
+  for (const frame_record& f : frames_) {
+    if (f.sums.n_reference > 0) ++n_reference;
+    total.n_valid += f.sums.log_ratio.count();
+    total.n_reference += f.sums.n_reference;
+    total.n_estimate += f.sums.n_estimate;
+    if (!f.errors) continue;
+    ++n_defined;
+    for (const auto& [name, value] : error_fields) total.*value += (*f.errors).*value;
+  }
+  for (const auto& [name, value] : error_fields) {
+    total.*value /= value == &error_summary::coverage ? n_reference : n_defined;
+  }
+  return total;
+}
+
+inline std::vector<std::size_t> worst_first(const std::vector<frame_record>& frames,
+                                            double error_summary::*field) {
+  std::vector<std::size_t> order(frames.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (!frames[a].errors || !frames[b].errors) return frames[a].errors && !frames[b].errors;
+    return (*frames[a].errors).*field > (*frames[b].errors).*field;
+  });
+  return order;
+}
+
+}  // namespace aib::depth
+
+// aib/pose/angle_bins.hpp
+
+namespace aib::pose {
+
+/// Bins of angles between ascending edges in degrees: bin k holds edge[k - 1] <= angle < edge[k].
+class angle_bins {
+ public:
+  /// Sorts the edges and drops repeated ones. Throws argument_error unless each is in (0, 360].
+  explicit angle_bins(std::vector<double> edges_deg) : edges_deg_(std::move(edges_deg)) {
+    for (const double e : edges_deg_) {
+      if (e > 0 && e <= 360) continue;
+      throw argument_error(message("angle_bins: edges in (0, 360] degrees expected, found ", e));
+    }
+    std::sort(edges_deg_.begin(), edges_deg_.end());
+    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end()), edges_deg_.end());
+  }
+
+  [[nodiscard]] std::size_t size() const { return edges_deg_.size() + 1; }
+  [[nodiscard]] const std::vector<double>& edges_deg() const { return edges_deg_; }
+
+  /// Bin of an angle: the number of edges that it reaches.
+  [[nodiscard]] std::size_t find(double angle_deg) const {
+    return static_cast<std::size_t>(
+        std::upper_bound(edges_deg_.begin(), edges_deg_.end(), angle_deg) - edges_deg_.begin());
+  }
+
+  /// Number of bins that lie wholly below an edge. Throws argument_error if it is none of ours.
+  [[nodiscard]] std::size_t bins_below(double edge_deg) const {
+    const auto at = std::lower_bound(edges_deg_.begin(), edges_deg_.end(), edge_deg);
+    if (at == edges_deg_.end() || *at != edge_deg)
+      throw argument_error(message("angle_bins: ", edge_deg, " degrees is not an edge"));
+    return static_cast<std::size_t>(at - edges_deg_.begin()) + 1;
+  }
+
+ private:
+  std::vector<double> edges_deg_;
+};
+
+/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root, an
+/// arc function or a search: the leading bits of the key choose a cell, which holds at most one
+/// edge. Where a key is too near to an edge for its rounding, or a cell holds several edges, the
+/// table says so, and the caller calculates the angle.
+class key_table {
+ public:
+  struct cell {
+    double edge;           ///< key; infinite: no edge here; NaN: ask the angle
+    std::uint32_t bin[2];  ///< of keys above, of keys below the edge: indexed by a sign bit
+  };
+
+  /// Cells of a table.
+  static constexpr std::size_t size() { return cell_of(1) + 1; }
+
+  /// Keys nearer to an edge than this are not trusted: tens of roundings of a key in [0, 1].
+  static constexpr double doubt = 1e-14;
+
+  /// Cell of a key.
+  static constexpr std::size_t cell_of(double key) {
+    return (std::bit_cast<std::uint64_t>(key > lowest ? key : lowest) >> shift) - first;
+  }
+
+  /// keys   keys of the edges, in any order
+  /// bin    bin of a key, std::size_t(double)
+  template <class BinOfKey>
+  key_table(std::vector<double> keys, BinOfKey&& bin) {
+    std::sort(keys.begin(), keys.end());
+    cells_.reserve(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double low = i == 0 ? 0 : lower_end(i);
+      const double high = std::min(1.0, lower_end(i + 1));
+      const auto from = std::lower_bound(keys.begin(), keys.end(), low - doubt);
+      const auto to = std::upper_bound(keys.begin(), keys.end(), high + doubt);
+      cells_.push_back(from == to ? without_edge(bin((low + high) / 2))
+                                  : with_edges(low, *from, *(to - 1), high, bin));
+    }
+  }
+
+  [[nodiscard]] const std::vector<cell>& cells() const { return cells_; }
+
+ private:
+  static constexpr double lowest = 0x1p-20;
+  static constexpr int shift = 46;  // leaves 6 of 52 fraction bits: 64 cells an octave
+  static constexpr std::uint64_t first = std::bit_cast<std::uint64_t>(lowest) >> shift;
+
+  static double lower_end(std::size_t i) { return std::bit_cast<double>((first + i) << shift); }
+
+  static cell without_edge(std::size_t bin) {
+    const auto b = static_cast<std::uint32_t>(bin);
+    return {std::numeric_limits<double>::infinity(), {b, b}};
+  }
+
+  template <class BinOfKey>
+  static cell with_edges(double low, double edge, double last, double high, BinOfKey& bin) {
+    if (last - edge > doubt / 4) return {std::numeric_limits<double>::quiet_NaN(), {0, 0}};
+    return {edge,
+            {static_cast<std::uint32_t>(bin(std::min(1.0, (edge + high) / 2))),
+             static_cast<std::uint32_t>(bin(std::max(0.0, (low + edge) / 2)))}};
+  }
+
+  std::vector<cell> cells_;
+};
+
+/// Key of a rotation error: sin^2 of half the angle.
+[[nodiscard]] inline key_table rotation_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(e) / 2);
+    if (e <= 180) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(math::degrees(2 * std::asin(std::sqrt(key)))); }};
+}
+
+/// Key of a direction error below 90 degrees: sin^2 of the angle.
+[[nodiscard]] inline key_table front_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(e));
+    if (e <= 90) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(math::degrees(std::asin(std::sqrt(key)))); }};
+}
+
+/// Key of a direction error above 90 degrees: sin^2 of what is missing to 180.
+[[nodiscard]] inline key_table back_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(180 - e));
+    if (e >= 90 && e <= 180) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(180 - math::degrees(std::asin(std::sqrt(key)))); }};
+}
+
+}  // namespace aib::pose
 
 // aib/pose/trajectory.hpp
 
@@ -1359,6 +3388,1291 @@ inline trajectory select(const trajectory& t, const std::vector<std::size_t>& in
 
 }  // namespace aib::pose
 
+// aib/pose/associate.hpp
+
+namespace aib::pose {
+
+enum class match_by { name, stamp, index };
+
+/// How often a pose may be matched.
+enum class association_rule {
+  one_to_one,
+  evo,  ///< each pose of the shorter trajectory takes its nearest stamp, taken or not
+};
+
+struct associate_options {
+  match_by by = match_by::name;
+  double max_gap_s = 0.01;        ///< stamps: largest difference, inclusive
+  double offset_s = 0;            ///< stamps: added to those of the estimate
+  bool ignore_case = false;       ///< names: IMG_1.jpg is img_1.jpg
+  bool ignore_extension = false;  ///< names: 0001.png is 0001.exr
+  bool ignore_folder = false;     ///< names: images/0001.png is 0001.png
+  association_rule rule = association_rule::one_to_one;
+};
+
+/// Poses that belong together, and what was left out.
+struct association {
+  trajectory estimate;                      ///< in the order of the reference (evo: of the shorter)
+  trajectory reference;                     ///< as long
+  std::vector<std::size_t> estimate_index;  ///< where each pose stood
+  std::vector<std::size_t> reference_index;  ///< where each pose stood
+  std::size_t n_matched;
+  std::size_t n_estimate_only;   ///< poses of the estimate without a partner
+  std::size_t n_reference_only;  ///< poses of the reference without a partner
+};
+
+/// Pairs the poses of an estimate with those of a reference: by image name, by the nearest time
+/// stamp (closest pairs first, each pose once), or by position in the list.
+///
+/// Throws argument_error if names (stamps) are missing or not unique under the rules,
+/// undefined_error if no pose matches; it says which rule on names would have helped.
+association associate(const trajectory& estimate,
+                      const trajectory& reference,
+                      const associate_options& options = {});
+
+namespace detail {
+
+struct index_pair {
+  std::size_t estimate;
+  std::size_t reference;
+};
+
+inline std::string name_key(std::string_view name, const associate_options& rules) {
+  if (rules.ignore_folder) {
+    const std::size_t slash = name.find_last_of("/\\");
+    if (slash != std::string_view::npos) name.remove_prefix(slash + 1);
+  }
+  if (rules.ignore_extension) {
+    const std::size_t slash = name.find_last_of("/\\"), dot = name.find_last_of('.');
+    const std::size_t stem = slash == std::string_view::npos ? 0 : slash + 1;
+    if (dot != std::string_view::npos && dot > stem) name = name.substr(0, dot);
+  }
+  std::string key(name);
+  if (rules.ignore_case) {
+    for (char& c : key) {
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+  }
+  return key;
+}
+
+inline std::unordered_map<std::string, std::size_t> name_table(std::string_view whose,
+                                                               const trajectory& t,
+                                                               const associate_options& rules) {
+  std::unordered_map<std::string, std::size_t> table;
+  for (std::size_t i = 0; i < t.names.size(); ++i) {
+    const auto [at, fresh] = table.emplace(name_key(t.names[i], rules), i);
+    if (fresh) continue;
+    throw argument_error(message("associate: two poses of the ", whose, " have one name: \"",
+                                 t.names[at->second], "\" and \"", t.names[i], "\""));
+  }
+  return table;
+}
+
+inline std::vector<index_pair> match_names(const trajectory& estimate,
+                                           const trajectory& reference,
+                                           const associate_options& options) {
+  if (estimate.names.size() != estimate.size() || reference.names.size() != reference.size())
+    throw argument_error("associate: by name, but not every pose has one; try stamp or index");
+  const auto table = name_table("estimate", estimate, options);
+  name_table("reference", reference, options);
+  std::vector<index_pair> pairs;
+  for (std::size_t r = 0; r < reference.size(); ++r) {
+    const auto at = table.find(name_key(reference.names[r], options));
+    if (at != table.end()) pairs.push_back({at->second, r});
+  }
+  return pairs;
+}
+
+/// Indices of stamps in ascending order, equal ones in their own order.
+inline std::vector<std::size_t> by_stamp(const std::vector<double>& stamps) {
+  std::vector<std::size_t> order(stamps.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
+  return order;
+}
+
+/// A sorted list whose places are taken one after another.
+class free_places {
+ public:
+  explicit free_places(std::size_t n) : left_(n + 1), right_(n + 1) {
+    std::iota(left_.begin(), left_.end(), std::size_t{0});
+    std::iota(right_.begin(), right_.end(), std::size_t{0});
+  }
+  /// Nearest free place at or above i; the length where there is none.
+  std::size_t at_or_above(std::size_t i) { return root(right_, i); }
+  /// One more than the nearest free place below i; 0 where there is none.
+  std::size_t end_below(std::size_t i) { return root(left_, i); }
+  void take(std::size_t i) {
+    right_[i] = i + 1;
+    left_[i + 1] = i;
+  }
+
+ private:
+  static std::size_t root(std::vector<std::size_t>& parent, std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  std::vector<std::size_t> left_, right_;
+};
+
+/// Pairs in ascending order of their gap, each stamp once.
+inline std::vector<index_pair> match_stamps(const std::vector<double>& estimate,
+                                            const std::vector<double>& reference,
+                                            const associate_options& options) {
+  const std::vector<std::size_t> order = by_stamp(reference);
+  struct candidate {
+    double gap;
+    std::size_t place, estimate;
+    bool operator>(const candidate& o) const {
+      if (gap != o.gap) return gap > o.gap;
+      return place != o.place ? place > o.place : estimate > o.estimate;
+    }
+  };
+  std::priority_queue<candidate, std::vector<candidate>, std::greater<>> nearest;
+  free_places places(order.size());
+  const auto offer = [&](std::size_t e, std::size_t place) {
+    const double gap = std::abs(reference[order[place]] - (estimate[e] + options.offset_s));
+    if (gap <= options.max_gap_s) nearest.push({gap, place, e});
+  };
+  const auto place_of = [&](std::size_t e) {
+    const auto at =
+        std::lower_bound(order.begin(), order.end(), estimate[e] + options.offset_s,
+                         [&](std::size_t r, double stamp) { return reference[r] < stamp; });
+    return static_cast<std::size_t>(at - order.begin());
+  };
+  const auto offer_neighbours = [&](std::size_t e) {
+    const std::size_t above = places.at_or_above(place_of(e)),
+                      below = places.end_below(place_of(e));
+    if (above < order.size()) offer(e, above);
+    if (below > 0) offer(e, below - 1);
+  };
+  for (std::size_t e = 0; e < estimate.size(); ++e) offer_neighbours(e);
+  std::vector<bool> matched(estimate.size());
+  std::vector<index_pair> pairs;
+  while (!nearest.empty()) {
+    const candidate c = nearest.top();
+    nearest.pop();
+    if (matched[c.estimate]) continue;
+    if (places.at_or_above(c.place) != c.place) {  // taken meanwhile
+      offer_neighbours(c.estimate);
+      continue;
+    }
+    places.take(c.place);
+    matched[c.estimate] = true;
+    pairs.push_back({c.estimate, order[c.place]});
+  }
+  std::sort(pairs.begin(), pairs.end(),
+            [](const index_pair& a, const index_pair& b) { return a.reference < b.reference; });
+  return pairs;
+}
+
+/// evo's core/sync.py: every stamp of the shorter list, nearest one of the longer, repetitions
+/// kept.
+inline std::vector<index_pair> match_stamps_as_evo(const std::vector<double>& estimate,
+                                                   const std::vector<double>& reference,
+                                                   const associate_options& options) {
+  const bool estimate_longer = estimate.size() > reference.size();
+  const auto& shorter = estimate_longer ? reference : estimate;
+  const auto& longer = estimate_longer ? estimate : reference;
+  const double offset = estimate_longer ? options.offset_s : -options.offset_s;
+  const std::vector<std::size_t> order = by_stamp(longer);
+  std::vector<index_pair> pairs;
+  for (std::size_t s = 0; s < shorter.size(); ++s) {
+    std::optional<std::size_t> best;
+    double best_gap = std::numeric_limits<double>::infinity();
+    const auto at =
+        std::lower_bound(order.begin(), order.end(), shorter[s] - offset,
+                         [&](std::size_t l, double stamp) { return longer[l] < stamp; });
+    const auto begin = at - std::min<std::ptrdiff_t>(at - order.begin(), 2);
+    const auto end = at + std::min<std::ptrdiff_t>(order.end() - at, 2);
+    for (auto l = begin; l != end; ++l) {
+      const double gap = std::abs(shorter[s] - (longer[*l] + offset));
+      if (gap < best_gap || (gap == best_gap && *l < *best)) {
+        best = *l;
+        best_gap = gap;
+      }
+    }
+    if (!best || !(best_gap <= options.max_gap_s)) continue;
+    pairs.push_back(estimate_longer ? index_pair{*best, s} : index_pair{s, *best});
+  }
+  return pairs;
+}
+
+inline std::vector<index_pair> match_stamps(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            const associate_options& options) {
+  if (estimate.stamps_s.size() != estimate.size() || reference.stamps_s.size() != reference.size())
+    throw argument_error("associate: by stamp, but not every pose has one; try name or index");
+  for (const auto* stamps : {&estimate.stamps_s, &reference.stamps_s}) {
+    for (const double s : *stamps) {
+      if (!std::isfinite(s)) throw argument_error("associate: a stamp is not finite");
+    }
+  }
+  return options.rule == association_rule::evo
+             ? match_stamps_as_evo(estimate.stamps_s, reference.stamps_s, options)
+             : match_stamps(estimate.stamps_s, reference.stamps_s, options);
+}
+
+inline std::vector<index_pair> match_indices(std::size_t n) {
+  std::vector<index_pair> pairs;
+  for (std::size_t i = 0; i < n; ++i) pairs.push_back({i, i});
+  return pairs;
+}
+
+/// What a user may try who got nothing.
+inline std::string advice(const trajectory& estimate,
+                          const trajectory& reference,
+                          const associate_options& options) {
+  if (options.by == match_by::stamp)
+    return message("; stamps within ", options.max_gap_s, " s expected");
+  if (options.by == match_by::index) return "";
+  const std::string names = estimate.empty() || reference.empty()
+                                ? ""
+                                : message(", \"", estimate.names.front(), "\" in the one, \"",
+                                          reference.names.front(), "\" in the other");
+  associate_options loose = options;
+  loose.ignore_case = loose.ignore_extension = loose.ignore_folder = true;
+  std::unordered_map<std::string, std::size_t> table;
+  for (const std::string& name : estimate.names) table.emplace(name_key(name, loose), 0);
+  std::size_t n = 0;
+  for (const std::string& name : reference.names) n += table.count(name_key(name, loose));
+  if (n == 0) return names;
+  return message(names, "; ignore_folder, ignore_extension and ignore_case would match ", n);
+}
+
+inline std::size_t distinct(std::vector<std::size_t> indices) {
+  std::sort(indices.begin(), indices.end());
+  return static_cast<std::size_t>(std::unique(indices.begin(), indices.end()) - indices.begin());
+}
+
+}  // namespace detail
+
+inline association associate(const trajectory& estimate,
+                             const trajectory& reference,
+                             const associate_options& options) {
+  check(estimate);
+  check(reference);
+  if (!(options.max_gap_s >= 0))
+    throw argument_error(message("associate: max_gap >= 0 expected, found ", options.max_gap_s));
+  const std::vector<detail::index_pair> pairs =
+      options.by == match_by::name ? detail::match_names(estimate, reference, options)
+      : options.by == match_by::stamp
+          ? detail::match_stamps(estimate, reference, options)
+          : detail::match_indices(std::min(estimate.size(), reference.size()));
+  if (pairs.empty()) {
+    throw undefined_error(message(
+        "associate: none of ", estimate.size(), " estimated poses matches one of ",
+        reference.size(), " reference poses", detail::advice(estimate, reference, options)));
+  }
+  std::vector<std::size_t> e, r;
+  for (const detail::index_pair& p : pairs) {
+    e.push_back(p.estimate);
+    r.push_back(p.reference);
+  }
+  association out{.estimate = select(estimate, e),
+                  .reference = select(reference, r),
+                  .estimate_index = e,
+                  .reference_index = r,
+                  .n_matched = pairs.size(),
+                  .n_estimate_only = estimate.size() - detail::distinct(e),
+                  .n_reference_only = reference.size() - detail::distinct(r)};
+  if (options.by == match_by::name) out.estimate.names = out.reference.names;
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/joint_counts.hpp
+
+namespace aib::pose {
+
+/// Frame pairs counted by rotation error and by direction error at once, mergeable. Every recall,
+/// folded or signed, of one error or of both, is a sum of its cells.
+class joint_counts {
+ public:
+  joint_counts(angle_bins rotation, angle_bins translation)
+      : rotation_(std::move(rotation)), translation_(std::move(translation)), counts_(places()) {}
+
+  [[nodiscard]] const angle_bins& rotation() const { return rotation_; }
+  [[nodiscard]] const angle_bins& translation() const { return translation_; }
+
+  /// Translation bins, and one column of pairs without a direction.
+  [[nodiscard]] std::size_t columns() const { return translation_.size() + 1; }
+  [[nodiscard]] std::size_t places() const { return rotation_.size() * columns(); }
+
+  /// Index of the cell of a pair.
+  [[nodiscard]] std::size_t place(double rotation_deg,
+                                  std::optional<double> translation_deg) const {
+    const std::size_t column =
+        translation_deg ? translation_.find(*translation_deg) : translation_.size();
+    return rotation_.find(rotation_deg) * columns() + column;
+  }
+
+  /// Adds counts of the same layout.
+  template <class Integer>
+  void add(const std::vector<Integer>& counts) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += counts[i];
+  }
+
+  /// Throw argument_error if the bins differ.
+  joint_counts& operator+=(const joint_counts& other) {
+    check(other);
+    add(other.counts_);
+    return *this;
+  }
+  /// Takes a subset away.
+  joint_counts& operator-=(const joint_counts& subset) {
+    check(subset);
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] -= subset.counts_[i];
+    return *this;
+  }
+
+  /// Pairs in rotation bins [0, rotation_end) and columns [column, column_end).
+  [[nodiscard]] std::uint64_t sum(std::size_t rotation_end,
+                                  std::size_t column,
+                                  std::size_t column_end) const {
+    std::uint64_t n = 0;
+    for (std::size_t r = 0; r < rotation_end; ++r) {
+      for (std::size_t c = column; c < column_end; ++c) n += counts_[r * columns() + c];
+    }
+    return n;
+  }
+
+  [[nodiscard]] std::uint64_t pairs() const { return sum(rotation_.size(), 0, columns()); }
+  [[nodiscard]] std::uint64_t without_direction() const {
+    return sum(rotation_.size(), translation_.size(), columns());
+  }
+
+ private:
+  void check(const joint_counts& other) const {
+    if (other.rotation_.edges_deg() == rotation_.edges_deg() &&
+        other.translation_.edges_deg() == translation_.edges_deg())
+      return;
+    throw argument_error("joint_counts: the bins differ");
+  }
+
+  angle_bins rotation_, translation_;
+  std::vector<std::uint64_t> counts_;
+};
+
+}  // namespace aib::pose
+
+// aib/pose/auc_convention.hpp
+
+namespace aib::pose {
+
+/// Whose area under the recall curve. On one trajectory they give from 0.47 to 0.69: the convention
+/// is part of the number.
+enum class auc_convention {
+  paper,                ///< E_i E_j^-1, mean over tau = 1..T of min(RRA, RTA), signed directions
+  vggt,                 ///< E_i E_j^-1, max of both errors a pair, folded, last bin closed
+  posediffusion,        ///< as vggt with E_j E_i^-1; pi3 as well
+  posediffusion_torch,  ///< as posediffusion with T + 1 bins on [0, T]
+  da3,                  ///< E_i^-1 E_j from the first camera, else as vggt; depends on that camera
+  colmap,  ///< ordered pairs, trapezoids, inclusive, missing frames count as 180 degrees
+  exact,   ///< exact area under the recall of the max of both errors, signed
+};
+
+inline constexpr std::array<std::string_view, 7> auc_convention_names = {
+    "paper", "vggt", "posediffusion", "posediffusion_torch", "da3", "colmap", "exact",
+};
+
+[[nodiscard]] constexpr std::string_view name(auc_convention c) {
+  return auc_convention_names[static_cast<std::size_t>(c)];
+}
+
+/// Whether a convention takes opposite directions for the same.
+[[nodiscard]] constexpr bool folds(auc_convention c) {
+  return c == auc_convention::vggt || c == auc_convention::posediffusion ||
+         c == auc_convention::posediffusion_torch || c == auc_convention::da3;
+}
+
+/// Whether a convention is a mean over thresholds, so that counts of pairs suffice.
+[[nodiscard]] constexpr bool is_binned(auc_convention c) {
+  return c == auc_convention::paper || folds(c);
+}
+
+/// Share of pairs by threshold, and its mean.
+struct recall {
+  double auc = 0;                ///< by the convention
+  double auc_signed = 0;         ///< the same with directions over 0..180 degrees
+  std::vector<double> rra = {};  ///< at 1, 2, .. max_deg degrees, strictly below
+  std::vector<double> rta = {};  ///< folded where the convention folds
+};
+
+/// The thresholds of a convention, the bins that they need, and their recalls. `convention` is one
+/// that is_binned, `max_deg` in [1, 180].
+class recall_thresholds {
+ public:
+  recall_thresholds(auc_convention convention, unsigned max_deg)
+      : convention_(convention), max_deg_(max_deg) {
+    if (!is_binned(convention))
+      throw argument_error(message("auc: convention ", name(convention), " has no thresholds"));
+    if (max_deg < 1 || max_deg > 180)
+      throw argument_error(message("auc: max_deg in [1, 180] expected, found ", max_deg));
+    for (unsigned k = 1; k <= max_deg; ++k) whole_.push_back({static_cast<double>(k), false});
+    averaged_ = convention == auc_convention::posediffusion_torch ? torch(max_deg) : whole_;
+    if (folds(convention)) averaged_.back().closed = true;
+  }
+
+  [[nodiscard]] angle_bins rotation_bins() const {
+    std::vector<double> edges;
+    for (const auto* list : {&whole_, &averaged_}) {
+      for (const threshold t : *list) edges.push_back(t.edge());
+    }
+    return angle_bins(std::move(edges));
+  }
+  [[nodiscard]] angle_bins translation_bins() const {
+    std::vector<double> edges;
+    for (const auto* list : {&whole_, &averaged_}) {
+      for (const threshold t : *list) {
+        edges.push_back(t.edge());
+        if (t.mirrored() > 0) edges.push_back(t.mirrored());
+      }
+    }
+    return angle_bins(std::move(edges));
+  }
+
+  /// Throws undefined_error if no pair has a direction.
+  [[nodiscard]] recall of(const joint_counts& counts) const;
+
+ private:
+  struct threshold {
+    double deg;
+    bool closed;  // an error equal to it counts as below
+
+    [[nodiscard]] double edge() const { return closed ? std::nextafter(deg, 360.0) : deg; }
+    /// Edge above which a folded error is below.
+    [[nodiscard]] double mirrored() const {
+      return closed ? 180 - deg : std::nextafter(180 - deg, 360.0);
+    }
+    [[nodiscard]] bool holds_right_angles() const { return deg > 90 || (closed && deg == 90); }
+  };
+
+  static std::vector<threshold> torch(unsigned max_deg) {
+    std::vector<threshold> out;
+    for (unsigned k = 1; k <= max_deg + 1; ++k)
+      out.push_back({static_cast<double>(k) * max_deg / (max_deg + 1), false});
+    return out;
+  }
+
+  /// Pairs below a threshold in their direction, with rotations in bins [0, rotation_end).
+  static std::uint64_t directed(const joint_counts& counts, std::size_t rotation_end, threshold t) {
+    return counts.sum(rotation_end, 0, counts.translation().bins_below(t.edge()));
+  }
+  static std::uint64_t folded(const joint_counts& counts, std::size_t rotation_end, threshold t) {
+    if (t.holds_right_angles()) return counts.sum(rotation_end, 0, counts.columns());
+    return directed(counts, rotation_end, t) +
+           counts.sum(rotation_end, counts.translation().bins_below(t.mirrored()),
+                      counts.translation().size());
+  }
+
+  auc_convention convention_;
+  unsigned max_deg_;
+  std::vector<threshold> whole_, averaged_;
+};
+
+inline recall recall_thresholds::of(const joint_counts& counts) const {
+  const std::uint64_t pairs = counts.pairs();
+  if (pairs == counts.without_direction()) {
+    throw undefined_error(
+        message("auc: none of ", pairs, " pairs has a direction; relative_angles still gives RRA"));
+  }
+  const auto n = static_cast<double>(pairs);
+  const bool folding = folds(convention_);
+  const std::size_t all = counts.rotation().size();
+  recall out;
+  for (const threshold t : whole_) {
+    const std::size_t below = counts.rotation().bins_below(t.deg);
+    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
+    out.rta.push_back(
+        static_cast<double>(folding ? folded(counts, all, t) : directed(counts, all, t)) / n);
+  }
+  if (convention_ == auc_convention::paper) {
+    for (std::size_t k = 0; k < whole_.size(); ++k) out.auc += std::min(out.rra[k], out.rta[k]);
+    out.auc_signed = out.auc /= max_deg_;
+    return out;
+  }
+  for (const threshold t : averaged_) {
+    const std::size_t below = counts.rotation().bins_below(t.edge());
+    out.auc += static_cast<double>(folded(counts, below, t)) / n;
+    out.auc_signed += static_cast<double>(directed(counts, below, t)) / n;
+  }
+  out.auc /= static_cast<double>(averaged_.size());
+  out.auc_signed /= static_cast<double>(averaged_.size());
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/baselines.hpp
+
+namespace aib::pose {
+
+/// The camera centres of a trajectory and which of their differences have a direction: those longer
+/// than 1e-9 of the longest and than 1e-12 of the largest coordinate.
+///
+/// Centres are divided by a power of two near their largest coordinate, so that no square
+/// overflows; lengths below are in that unit. The longest baseline is bounded by a ball and is
+/// searched for only when a baseline lies between the bounds.
+class baselines {
+ public:
+  /// poses     finite
+  /// padding   NaN entries behind the centres, for blocks that read over the end
+  explicit baselines(std::span<const math::rigid3> poses, std::size_t padding = 0);
+
+  [[nodiscard]] Eigen::Vector3d between(std::size_t i, std::size_t j) const {
+    return {x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+  }
+
+  /// Any longer baseline has a direction.
+  [[nodiscard]] double certain() const { return std::max(2e-9 * radius_, smallest_); }
+
+  [[nodiscard]] bool has_direction(std::size_t i, std::size_t j) const {
+    const double length = between(i, j).norm();
+    if (length > certain()) return true;
+    if (!(length > std::max(1e-9 * radius_, smallest_))) return false;
+    return length > std::max(1e-9 * longest(), smallest_);
+  }
+
+  std::vector<double> x, y, z;
+
+ private:
+  [[nodiscard]] double longest() const;
+
+  std::size_t size_;
+  double smallest_;    // 1e-12 of the largest coordinate
+  double radius_ = 0;  // of a ball about all centres, and at most the longest baseline
+  mutable std::once_flag searched_;
+  mutable double longest_ = 0;
+};
+
+inline baselines::baselines(std::span<const math::rigid3> poses, std::size_t padding)
+    : size_(poses.size()) {
+  double largest = 0;
+  for (const math::rigid3& p : poses)
+    largest = std::max(largest, p.translation.cwiseAbs().maxCoeff());
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  smallest_ = 1e-12 * std::scalbn(largest, -exponent);
+  for (auto* axis : {&x, &y, &z})
+    axis->resize(size_ + padding, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < size_; ++i) {
+    x[i] = std::scalbn(poses[i].translation.x(), -exponent);
+    y[i] = std::scalbn(poses[i].translation.y(), -exponent);
+    z[i] = std::scalbn(poses[i].translation.z(), -exponent);
+    radius_ = std::max(radius_, between(0, i).norm());  // about the first centre
+  }
+}
+
+inline double baselines::longest() const {
+  std::call_once(searched_, [&] {
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t j = i + 1; j < size_; ++j)
+        longest_ = std::max(longest_, between(i, j).norm());
+    }
+  });
+  return longest_;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/frame_pairs.hpp
+
+namespace aib::pose {
+
+/// Errors of the relative pose of two frames, in degrees, [0, 180].
+struct pair_error {
+  double rotation_deg;
+  std::optional<double> translation_deg;  ///< between directions; nothing where there is none
+};
+
+/// Frames j in [begin, end) that a frame i is paired with.
+struct pair_row {
+  std::size_t begin;
+  std::size_t end;
+};
+
+inline namespace AIB_ISA {
+
+/// The relative poses E_i E_j^-1 (camera-from-world) of all pairs of two trajectories, estimate
+/// against reference, in a stream: memory grows with the frames, never with the pairs.
+///
+/// With R the rotation of world_from_camera, C the camera centre, g the reference, p the estimate:
+///   rotation      R_ij = R_i^T R_j. The error is the angle of R_p,ij R_g,ij^T, which is that of
+///                 A_i^T A_j with the residual A_i = R_p,i R_g,i^T. With unit quaternions a_i of
+///                 A_i its half has the cosine |a_i . a_j|: one dot product of four numbers.
+///   translation   t_ij = R_i^T (C_j - C_i). The angle between t_p,ij and t_g,ij is that between
+///                 A_i^T (C_p,j - C_p,i) and C_g,j - C_g,i: a matrix of frame i, no pair matrix.
+/// Neither angle is calculated: sin^2 of it (of its half for rotations) is compared with the sin^2
+/// of the edges, see key_table. Results are the same bits for any number of threads.
+///
+/// A pair has no direction where a baseline is too short for one, see baselines.
+class frame_pairs {
+ public:
+  /// Poses world_from_camera, finite, rotations orthonormal.
+  /// Throws argument_error if the lengths differ.
+  frame_pairs(std::span<const math::rigid3> estimate, std::span<const math::rigid3> reference);
+
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] const baselines& estimate_baselines() const { return estimate_; }
+  [[nodiscard]] const baselines& reference_baselines() const { return reference_; }
+
+  /// Exact errors of one pair.
+  [[nodiscard]] pair_error error(std::size_t i, std::size_t j) const;
+
+  /// Counts the pairs of every frame i with the frames of `row(i)` by their errors.
+  ///
+  /// row   pair_row(std::size_t i), within [0, frames())
+  template <class Row>
+  [[nodiscard]] joint_counts count_rows(angle_bins rotation,
+                                        angle_bins translation,
+                                        Row&& row,
+                                        unsigned threads = 0,
+                                        const control& control = {}) const;
+
+  /// Counts every pair i < j.
+  [[nodiscard]] joint_counts count(angle_bins rotation,
+                                   angle_bins translation,
+                                   unsigned threads = 0,
+                                   const control& control = {}) const {
+    return count_rows(
+        std::move(rotation), std::move(translation),
+        [n = frames_](std::size_t i) {
+          return pair_row{i + 1, n};
+        },
+        threads, control);
+  }
+
+ private:
+  static constexpr std::size_t block = 64;  // pairs that are calculated together, in level 1 cache
+  static constexpr std::size_t rows = 16;   // of a chunk
+
+  struct block_keys {
+    double rotation[block], direction[block];
+    std::uint64_t rotation_cell[block], direction_cell[block];
+  };
+  /// Cells of directions: those of front_table, those of back_table, one that asks.
+  struct cell_tables {
+    std::vector<key_table::cell> rotation, direction;
+  };
+
+  [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
+  [[nodiscard]] static cell_tables tables_of(const joint_counts& bins);
+  void count_row(std::size_t i,
+                 pair_row row,
+                 const cell_tables& tables,
+                 const joint_counts& bins,
+                 std::vector<std::uint32_t>& counts) const;
+
+  std::size_t frames_;
+  std::array<std::vector<double>, 4> residual_;           // quaternions a_i
+  std::vector<Eigen::Matrix3d> reference_from_estimate_;  // A_i^T
+  baselines estimate_, reference_;
+};
+
+inline frame_pairs::frame_pairs(std::span<const math::rigid3> estimate,
+                                std::span<const math::rigid3> reference)
+    : frames_(estimate.size()), estimate_(estimate, block), reference_(reference, block) {
+  if (estimate.size() != reference.size()) {
+    throw argument_error(message("frame_pairs: as many estimated as reference poses expected, ",
+                                 "found ", estimate.size(), " and ", reference.size()));
+  }
+  for (auto& component : residual_) component.resize(frames_ + block);
+  reference_from_estimate_.reserve(frames_);
+  for (std::size_t i = 0; i < frames_; ++i) {
+    const Eigen::Matrix3d a = estimate[i].rotation * reference[i].rotation.transpose();
+    const math::quaternion q = math::quaternion_from(a);
+    residual_[0][i] = q.w;
+    residual_[1][i] = q.x;
+    residual_[2][i] = q.y;
+    residual_[3][i] = q.z;
+    reference_from_estimate_.push_back(a.transpose());
+  }
+}
+
+inline pair_error frame_pairs::error(std::size_t i, std::size_t j) const {
+  const auto a = [&](std::size_t k) {
+    return Eigen::Quaterniond(residual_[0][k], residual_[1][k], residual_[2][k], residual_[3][k]);
+  };
+  const Eigen::Quaterniond q = a(i).conjugate() * a(j);
+  pair_error out{math::degrees(2 * std::atan2(q.vec().norm(), std::abs(q.w()))), std::nullopt};
+  const Eigen::Vector3d g = reference_.between(i, j);
+  const Eigen::Vector3d p = estimate_.between(i, j);
+  if (reference_.has_direction(i, j) && estimate_.has_direction(i, j)) {
+    const Eigen::Vector3d moved = reference_from_estimate_[i] * p;
+    out.translation_deg = math::degrees(std::atan2(g.cross(moved).norm(), g.dot(moved)));
+  }
+  return out;
+}
+
+/// Keys of frame i with the frames j .. j + block - 1. Loops without branches over a fixed number
+/// of pairs, which every compiler turns into vector code.
+inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j) const {
+  block_keys out;
+  const double w = residual_[0][i], x = residual_[1][i], y = residual_[2][i], z = residual_[3][i];
+  const double *ws = &residual_[0][j], *xs = &residual_[1][j], *ys = &residual_[2][j],
+               *zs = &residual_[3][j];
+  for (std::size_t k = 0; k < block; ++k) {
+    const double cosine = w * ws[k] + x * xs[k] + y * ys[k] + z * zs[k];
+    out.rotation[k] = 1 - cosine * cosine;
+    out.rotation_cell[k] = key_table::cell_of(out.rotation[k]);
+  }
+  const Eigen::Matrix3d& m = reference_from_estimate_[i];
+  const double m00 = m(0, 0), m01 = m(0, 1), m02 = m(0, 2), m10 = m(1, 0), m11 = m(1, 1),
+               m12 = m(1, 2), m20 = m(2, 0), m21 = m(2, 1), m22 = m(2, 2);
+  const double gx = reference_.x[i], gy = reference_.y[i], gz = reference_.z[i];
+  const double px = estimate_.x[i], py = estimate_.y[i], pz = estimate_.z[i];
+  const double *gxs = &reference_.x[j], *gys = &reference_.y[j], *gzs = &reference_.z[j];
+  const double *pxs = &estimate_.x[j], *pys = &estimate_.y[j], *pzs = &estimate_.z[j];
+  const double g_certain = reference_.certain() * reference_.certain();
+  const double p_certain = estimate_.certain() * estimate_.certain();
+  constexpr std::uint64_t back = key_table::size(), ask = 2 * back;
+  for (std::size_t k = 0; k < block; ++k) {
+    const double g0 = gxs[k] - gx, g1 = gys[k] - gy, g2 = gzs[k] - gz;
+    const double p0 = pxs[k] - px, p1 = pys[k] - py, p2 = pzs[k] - pz;
+    const double u0 = m00 * p0 + m01 * p1 + m02 * p2;
+    const double u1 = m10 * p0 + m11 * p1 + m12 * p2;
+    const double u2 = m20 * p0 + m21 * p1 + m22 * p2;
+    const double gg = g0 * g0 + g1 * g1 + g2 * g2;
+    const double pp = p0 * p0 + p1 * p1 + p2 * p2;
+    const double dot = g0 * u0 + g1 * u1 + g2 * u2;
+    out.direction[k] = 1 - dot * dot / (gg * pp);
+    const std::uint64_t cell = key_table::cell_of(out.direction[k]) + (dot < 0 ? back : 0);
+    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : ask;
+  }
+  return out;
+}
+
+inline frame_pairs::cell_tables frame_pairs::tables_of(const joint_counts& bins) {
+  cell_tables out;
+  const key_table rotation = rotation_table(bins.rotation());
+  const key_table front = front_table(bins.translation()), back = back_table(bins.translation());
+  const auto columns = static_cast<std::uint32_t>(bins.columns());
+  for (key_table::cell c : rotation.cells())
+    out.rotation.push_back({c.edge, {c.bin[0] * columns, c.bin[1] * columns}});
+  out.direction = front.cells();
+  out.direction.insert(out.direction.end(), back.cells().begin(), back.cells().end());
+  out.direction.push_back({std::numeric_limits<double>::quiet_NaN(), {0, 0}});
+  return out;
+}
+
+inline void frame_pairs::count_row(std::size_t i,
+                                   pair_row row,
+                                   const cell_tables& tables,
+                                   const joint_counts& bins,
+                                   std::vector<std::uint32_t>& counts) const {
+  const key_table::cell* const rotation = tables.rotation.data();
+  const key_table::cell* const direction = tables.direction.data();
+  std::uint32_t* const count = counts.data();
+  for (std::size_t j = row.begin; j < row.end; j += block) {
+    const block_keys keys = keys_of(i, j);
+    const std::size_t n = std::min(block, row.end - j);
+    for (std::size_t k = 0; k < n; ++k) {
+      const key_table::cell& r = rotation[keys.rotation_cell[k]];
+      const key_table::cell& t = direction[keys.direction_cell[k]];
+      const double past_r = keys.rotation[k] - r.edge, past_t = keys.direction[k] - t.edge;
+      if (!(std::abs(past_r) > key_table::doubt) || !(std::abs(past_t) > key_table::doubt))
+          [[unlikely]] {
+        const pair_error e = error(i, j + k);
+        ++count[bins.place(e.rotation_deg, e.translation_deg)];
+      } else {
+        ++count[r.bin[std::signbit(past_r)] + t.bin[std::signbit(past_t)]];
+      }
+    }
+  }
+}
+
+template <class Row>
+joint_counts frame_pairs::count_rows(angle_bins rotation,
+                                     angle_bins translation,
+                                     Row&& row,
+                                     unsigned threads,
+                                     const control& control) const {
+  joint_counts total(std::move(rotation), std::move(translation));
+  const cell_tables tables = tables_of(total);
+  std::mutex mutex;
+  for_each_chunk(frames_, rows, threads, control, [&](const chunk& c) {
+    std::vector<std::uint32_t> counts(total.places());
+    for (std::size_t i = c.begin; i < c.end; ++i) count_row(i, row(i), tables, total, counts);
+    const std::scoped_lock lock(mutex);  // integers: the order of the sums does not matter
+    total.add(counts);
+  });
+  return total;
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::pose
+
+// aib/pose/registered.hpp
+
+namespace aib::pose {
+
+/// Throws argument_error unless two trajectories have as many poses and, where both have names, the
+/// same names in the same order.
+inline void check_associated(std::string_view who,
+                             const trajectory& estimate,
+                             const trajectory& reference) {
+  check(estimate);
+  check(reference);
+  if (estimate.size() != reference.size()) {
+    throw argument_error(message(who, ": ", estimate.size(), " estimated and ", reference.size(),
+                                 " reference poses; associate them first"));
+  }
+  if (estimate.names.empty() || reference.names.empty()) return;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    if (estimate.names[i] == reference.names[i]) continue;
+    throw argument_error(message(who, ": pose ", i, " is \"", estimate.names[i],
+                                 "\" in the estimate and \"", reference.names[i],
+                                 "\" in the reference; associate them first"));
+  }
+}
+
+/// The frames that have a finite pose in both of two associated trajectories.
+struct registered_frames {
+  std::vector<math::rigid3> estimate;   ///< world_from_camera
+  std::vector<math::rigid3> reference;  ///< world_from_camera
+  std::vector<std::size_t> index;       ///< of each in the trajectories, ascending
+};
+
+/// Throws argument_error as check_associated does.
+[[nodiscard]] inline registered_frames registered(std::string_view who,
+                                                  const trajectory& estimate,
+                                                  const trajectory& reference) {
+  check_associated(who, estimate, reference);
+  registered_frames out;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    const math::rigid3& e = estimate.world_from_camera[i];
+    const math::rigid3& r = reference.world_from_camera[i];
+    if (!e.is_finite() || !r.is_finite()) continue;
+    out.estimate.push_back(e);
+    out.reference.push_back(r);
+    out.index.push_back(i);
+  }
+  return out;
+}
+
+/// The name of a frame of two associated trajectories: one of theirs, else its number.
+[[nodiscard]] inline std::string frame_name(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            std::size_t i) {
+  if (!reference.names.empty()) return reference.names[i];
+  if (!estimate.names.empty()) return estimate.names[i];
+  return message(i);
+}
+
+}  // namespace aib::pose
+
+// aib/pose/auc.hpp
+
+namespace aib::pose {
+
+struct auc_options {
+  unsigned max_deg = 30;  ///< T, [1, 180]
+  auc_convention convention = auc_convention::paper;
+  double position_accuracy = 0;  ///< colmap: shorter reference baselines score by rotation alone
+  unsigned threads = 0;          ///< 0: all
+  struct control control = {};
+};
+
+struct auc_result {
+  auc_convention convention;
+  unsigned max_deg;
+  double auc;               ///< share, [0, 1]
+  double auc_signed;        ///< the same with signed directions: mirrored centres fold to nothing
+  std::vector<double> rra;  ///< share of pairs at 1, 2, .. max_deg degrees
+  std::vector<double> rta;  ///< folded where the convention folds
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;  ///< pairs without a direction, which never score
+  std::size_t n_unregistered;     ///< frames without a finite pose
+};
+
+/// Area under the recall curve of relative pose errors over all frame pairs, 0..max_deg degrees.
+///
+/// estimate    associated with the reference (`colmap` takes the whole reference and matches names:
+///             frames that are missing score there); its world and scale are its own
+///
+/// Pairs without a direction (see baselines) stay in the denominator; the folding conventions
+/// take them for 90 degrees, as their sources do. Invariant to a similarity of either side (`da3`
+/// only where it keeps the first camera first).
+/// Throws argument_error if the trajectories are not associated or max_deg is out of range,
+/// undefined_error if fewer than two frames are registered or no pair has a direction.
+/// Source: the conventions' own code, see auc_convention; the paper's Sec. 3.
+auc_result auc(const trajectory& estimate,
+               const trajectory& reference,
+               const auc_options& options = {});
+
+namespace detail {
+
+/// The frames in the form that makes frame_pairs' E_i E_j^-1 the relative pose of a convention.
+inline registered_frames frames_for(auc_convention convention, registered_frames frames) {
+  for (auto* poses : {&frames.estimate, &frames.reference}) {
+    if (convention == auc_convention::posediffusion ||
+        convention == auc_convention::posediffusion_torch) {
+      std::reverse(poses->begin(), poses->end());  // E_j E_i^-1
+    } else if (convention == auc_convention::da3) {
+      // E_i^-1 E_j of E_i E_0^-1 is the relative pose of the inverse poses.
+      const math::rigid3 world_from_first = poses->front();
+      for (math::rigid3& pose : *poses) pose = pose.inverse() * world_from_first;
+    }
+  }
+  return frames;
+}
+
+/// What the exact area needs of a set of pair errors e, mergeable in order.
+struct area_sums {
+  double below = 0;  // sum of (T - e) over e <= T
+  double last = 0;   // largest e <= T
+  std::uint64_t n_zero_baseline = 0;
+  std::vector<std::uint64_t> rotation = {};  // errors below k + 1 degrees, from k on
+  std::vector<std::uint64_t> translation = {};
+
+  explicit area_sums(unsigned max_deg = 0) : rotation(max_deg), translation(max_deg) {}
+
+  void add(double rotation_deg, double translation_deg) {
+    const double e = std::max(rotation_deg, translation_deg);
+    const auto limit = static_cast<double>(rotation.size());
+    if (e <= limit) {
+      below += limit - e;
+      last = std::max(last, e);
+    }
+    if (rotation_deg < limit) ++rotation[static_cast<std::size_t>(rotation_deg)];
+    if (translation_deg < limit) ++translation[static_cast<std::size_t>(translation_deg)];
+  }
+
+  friend area_sums operator+(area_sums a, const area_sums& b) {
+    a.below += b.below;
+    a.last = std::max(a.last, b.last);
+    a.n_zero_baseline += b.n_zero_baseline;
+    for (std::size_t k = 0; k < a.rotation.size(); ++k) {
+      a.rotation[k] += b.rotation[k];
+      a.translation[k] += b.translation[k];
+    }
+    return a;
+  }
+};
+
+/// Sums `visit(area_sums&, i, j)` over all pairs i < j of n frames.
+template <class Visit>
+area_sums sum_pairs(std::size_t n, const auc_options& options, Visit&& visit) {
+  return reduce_chunks<area_sums>(
+      n, 64, options.threads, options.control, area_sums(options.max_deg),
+      [&](const chunk& c) {
+        area_sums sums(options.max_deg);
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          for (std::size_t j = i + 1; j < n; ++j) visit(sums, i, j);
+        }
+        return sums;
+      },
+      [](area_sums a, const area_sums& b) { return std::move(a) + b; });
+}
+
+inline std::vector<double> cumulative_shares(const std::vector<std::uint64_t>& counts, double n) {
+  std::vector<double> out;
+  std::uint64_t below = 0;
+  for (const std::uint64_t c : counts) out.push_back(static_cast<double>(below += c) / n);
+  return out;
+}
+
+inline auc_result result_of(const area_sums& sums,
+                            double area,
+                            std::uint64_t n_pairs,
+                            std::size_t n_unregistered,
+                            const auc_options& options) {
+  const auto n = static_cast<double>(n_pairs);
+  const double share = area / (n * options.max_deg);
+  return {.convention = options.convention,
+          .max_deg = options.max_deg,
+          .auc = share,
+          .auc_signed = share,
+          .rra = cumulative_shares(sums.rotation, n),
+          .rta = cumulative_shares(sums.translation, n),
+          .n_pairs = n_pairs,
+          .n_zero_baseline = sums.n_zero_baseline,
+          .n_unregistered = n_unregistered};
+}
+
+inline auc_result exact_auc(const registered_frames& frames,
+                            std::size_t n_unregistered,
+                            const auc_options& options) {
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  const std::size_t n = pairs.frames();
+  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
+    const pair_error e = pairs.error(i, j);
+    s.n_zero_baseline += e.translation_deg ? 0 : 1;
+    s.add(e.rotation_deg, e.translation_deg.value_or(360));
+  });
+  const std::uint64_t n_pairs = n * (n - 1) / 2;
+  if (sums.n_zero_baseline == n_pairs) {
+    throw undefined_error(message("auc: none of ", n_pairs,
+                                  " pairs has a direction; relative_angles still gives RRA"));
+  }
+  return result_of(sums, sums.below, n_pairs, n_unregistered, options);
+}
+
+/// Source: COLMAP benchmark/reconstruction/evaluation/utils.py, compute_rel_errors, compute_auc.
+inline auc_result colmap_auc(const trajectory& estimate,
+                             const trajectory& reference,
+                             const auc_options& options) {
+  const bool named = !estimate.names.empty() && !reference.names.empty();
+  std::size_t total = 0;  // reference frames, registered or not
+  for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
+  const association matched =
+      associate(estimate, reference, {.by = named ? match_by::name : match_by::index});
+  registered_frames frames = registered("auc", matched.estimate, matched.reference);
+  if (total < 2) throw undefined_error(message("auc: 2 reference frames expected, found ", total));
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  std::reverse(frames.estimate.begin(), frames.estimate.end());
+  std::reverse(frames.reference.begin(), frames.reference.end());
+  const frame_pairs swapped(frames.estimate, frames.reference);
+  const std::size_t n = pairs.frames();
+  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
+    const pair_error one = pairs.error(i, j), other = swapped.error(n - 1 - j, n - 1 - i);
+    const math::rigid3 &gi = frames.reference[n - 1 - i], &gj = frames.reference[n - 1 - j];
+    const double baseline = (gj.translation - gi.translation).norm();
+    const bool short_reference =
+        baseline < options.position_accuracy || !pairs.reference_baselines().has_direction(i, j);
+    const double without = short_reference ? 0 : 90;
+    const auto translation = [&](const pair_error& e) {
+      return short_reference ? 0 : e.translation_deg.value_or(without);
+    };
+    s.n_zero_baseline += one.translation_deg ? 0 : 2;
+    s.add(one.rotation_deg, translation(one));
+    s.add(other.rotation_deg, translation(other));
+  });
+  return result_of(sums, sums.below + sums.last / 2,
+                   static_cast<std::uint64_t>(total) * (total - 1), total - n, options);
+}
+
+}  // namespace detail
+
+inline auc_result auc(const trajectory& estimate,
+                      const trajectory& reference,
+                      const auc_options& options) {
+  if (options.max_deg < 1 || options.max_deg > 180)
+    throw argument_error(message("auc: max_deg in [1, 180] expected, found ", options.max_deg));
+  if (options.convention == auc_convention::colmap)
+    return detail::colmap_auc(estimate, reference, options);
+  registered_frames frames = registered("auc", estimate, reference);
+  const std::size_t n_unregistered = estimate.size() - frames.index.size();
+  if (frames.index.size() < 2) {
+    throw undefined_error(message("auc: 2 registered frames expected, found ", frames.index.size(),
+                                  " of ", estimate.size()));
+  }
+  if (options.convention == auc_convention::exact)
+    return detail::exact_auc(frames, n_unregistered, options);
+  frames = detail::frames_for(options.convention, std::move(frames));
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
+                                  .count(thresholds.rotation_bins(), thresholds.translation_bins(),
+                                         options.threads, options.control);
+  recall r = thresholds.of(counts);
+  return {.convention = options.convention,
+          .max_deg = options.max_deg,
+          .auc = r.auc,
+          .auc_signed = r.auc_signed,
+          .rra = std::move(r.rra),
+          .rta = std::move(r.rta),
+          .n_pairs = counts.pairs(),
+          .n_zero_baseline = counts.without_direction(),
+          .n_unregistered = n_unregistered};
+}
+
+}  // namespace aib::pose
+
+// aib/pose/focal.hpp
+
+namespace aib::pose {
+
+/// The camera that a view was estimated with and the one that took it.
+struct camera_pair {
+  math::camera estimate;
+  math::camera reference;
+};
+
+/// What a mean is taken over.
+enum class focal_over {
+  views,    ///< each registered image counts
+  cameras,  ///< each different pair of cameras counts once
+};
+
+struct focal_error_result {
+  double mre;                ///< mean relative error, a share
+  std::size_t n;             ///< views or cameras averaged
+  std::vector<double> each;  ///< relative error of each
+};
+
+/// Focal length of a camera as it would be for an image of another size: fx goes with the width, fy
+/// with the height; their mean. Pixels. Throws argument_error where a model has no focal length.
+inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uint64_t height) {
+  const auto ratio = [](std::uint64_t to, std::uint64_t from) {
+    return to == 0 || from == 0 ? 1 : static_cast<double>(to) / static_cast<double>(from);
+  };
+  return (c.fx() * ratio(width, c.width) + c.fy() * ratio(height, c.height)) / 2;
+}
+
+/// Mean of |f - f_ref| / f_ref over views. The estimate's focal lengths are rescaled to the
+/// reference's image size (sizes of 0 are unknown: taken for equal), fx and fy averaged.
+///
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length.
+inline focal_error_result focal_error(std::span<const camera_pair> views,
+                                      focal_over over = focal_over::views) {
+  const auto same = [](const math::camera& a, const math::camera& b) {
+    return a.model == b.model && a.width == b.width && a.height == b.height &&
+           a.parameters == b.parameters;
+  };
+  focal_error_result out{0, 0, {}};
+  std::vector<const camera_pair*> counted;
+  for (const camera_pair& view : views) {
+    const auto is_view = [&](const camera_pair* c) {
+      return same(c->estimate, view.estimate) && same(c->reference, view.reference);
+    };
+    if (over == focal_over::cameras) {
+      if (std::any_of(counted.begin(), counted.end(), is_view)) continue;
+      counted.push_back(&view);
+    }
+    const math::camera& ref = view.reference;
+    const double f_ref = (ref.fx() + ref.fy()) / 2;
+    const double f = focal_at_size(view.estimate, ref.width, ref.height);
+    out.each.push_back(std::abs(f - f_ref) / f_ref);
+    out.mre += out.each.back();
+  }
+  out.n = out.each.size();
+  if (out.n == 0) throw undefined_error("focal_error: no view");
+  out.mre /= static_cast<double>(out.n);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/registration.hpp
+
+namespace aib::pose {
+
+struct registration {
+  double rate;                       ///< n_registered / n_total
+  std::size_t n_registered;          ///< reference frames with a finite pose in the estimate
+  std::size_t n_total;               ///< frames of the reference
+  std::vector<std::string> missing;  ///< names of the others, in the reference's order
+};
+
+/// Share of the reference's frames that have a pose in an estimate, or in any of several
+/// sub-models. Frames of the estimate that the reference does not name do not count.
+///
+/// rules   how names are compared, see associate_options
+///
+/// Throws argument_error if poses have no names, undefined_error if the reference is empty.
+inline registration registration_rate(std::span<const trajectory> estimates,
+                                      const trajectory& reference,
+                                      const associate_options& rules = {}) {
+  if (reference.empty()) throw undefined_error("registration_rate: the reference has no frame");
+  std::unordered_set<std::string> posed;
+  for (const trajectory& estimate : estimates) {
+    if (estimate.names.size() != estimate.size() || reference.names.empty())
+      throw argument_error("registration_rate: poses with names expected");
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      if (estimate.world_from_camera[i].is_finite())
+        posed.insert(detail::name_key(estimate.names[i], rules));
+    }
+  }
+  registration out{0, 0, reference.size(), {}};
+  for (const std::string& name : reference.names) {
+    if (posed.contains(detail::name_key(name, rules)))
+      ++out.n_registered;
+    else
+      out.missing.push_back(name);
+  }
+  out.rate = static_cast<double>(out.n_registered) / static_cast<double>(out.n_total);
+  return out;
+}
+
+inline registration registration_rate(const trajectory& estimate,
+                                      const trajectory& reference,
+                                      const associate_options& rules = {}) {
+  return registration_rate(std::span(&estimate, 1), reference, rules);
+}
+
+/// Index of the sub-model that is scored: most frames, then most points, then the lowest index.
+/// Never by score. Throws undefined_error if there is none.
+///
+/// n_points   one a model, or empty
+inline std::size_t largest_model(std::span<const trajectory> models,
+                                 std::span<const std::size_t> n_points = {}) {
+  if (models.empty()) throw undefined_error("largest_model: no model");
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    const bool more_points = !n_points.empty() && n_points[i] > n_points[best];
+    if (models[i].size() > models[best].size() ||
+        (models[i].size() == models[best].size() && more_points))
+      best = i;
+  }
+  return best;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/relative_angles.hpp
+
+namespace aib::pose {
+
+struct relative_angles_options {
+  std::vector<double> tau_deg = {5, 15, 30};  ///< thresholds, (0, 180]
+  unsigned threads = 0;                       ///< 0: all
+  struct control control = {};
+};
+
+/// Shares are of all pairs; a pair without a direction never scores in `rta`.
+struct relative_angles_result {
+  std::vector<double> tau_deg;  ///< as asked for
+  std::vector<double> rra;      ///< relative rotation accuracy: share of pairs below each tau
+  std::vector<double> rta;      ///< relative translation accuracy, signed directions
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;  ///< pairs without a direction
+  std::size_t n_unregistered;     ///< frames left out because a pose is not finite
+};
+
+/// Shares of frame pairs whose relative rotation, and whose relative translation direction, is off
+/// by strictly less than each tau.
+///
+/// estimate    associated with the reference; its world and scale are its own
+///
+/// Invariant to a similarity of either side. Throws argument_error if the trajectories are not
+/// associated or a tau is out of range, undefined_error if fewer than two frames are registered.
+/// Source: Jin et al., "Image matching across wide baselines", IJCV 2021, Sec. 3.3.
+inline relative_angles_result relative_angles(const trajectory& estimate,
+                                              const trajectory& reference,
+                                              const relative_angles_options& options = {}) {
+  for (const double tau : options.tau_deg) {
+    if (!(tau > 0 && tau <= 180))
+      throw argument_error(message("relative_angles: tau in (0, 180] expected, found ", tau));
+  }
+  const registered_frames frames = registered("relative_angles", estimate, reference);
+  if (frames.index.size() < 2) {
+    throw undefined_error(message("relative_angles: 2 registered frames expected, found ",
+                                  frames.index.size(), " of ", estimate.size()));
+  }
+  const angle_bins bins(options.tau_deg);
+  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
+                                  .count(bins, bins, options.threads, options.control);
+  relative_angles_result out{.tau_deg = options.tau_deg,
+                             .rra = {},
+                             .rta = {},
+                             .n_pairs = counts.pairs(),
+                             .n_zero_baseline = counts.without_direction(),
+                             .n_unregistered = estimate.size() - frames.index.size()};
+  const auto n = static_cast<double>(out.n_pairs);
+  for (const double tau : options.tau_deg) {
+    const std::size_t below = bins.bins_below(tau);
+    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
+    out.rta.push_back(static_cast<double>(counts.sum(bins.size(), 0, below)) / n);
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
 // aib/cloud/cloud.hpp
 
 namespace aib::cloud {
@@ -1395,6 +4709,531 @@ struct cloud {
 
 }  // namespace aib::cloud
 
+// aib/cloud/box.hpp
+
+namespace aib::cloud {
+
+/// A box along the axes, both ends included. Empty until something is added.
+struct box {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+
+  [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
+  [[nodiscard]] Eigen::Vector3d size() const { return high - low; }
+  [[nodiscard]] Eigen::Vector3d centre() const { return (low + high) / 2; }
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  }
+  void add(const Eigen::Vector3d& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+/// Box of the finite points among `points`, which are counted from `origin`.
+[[nodiscard]] inline box bounds(std::span<const Eigen::Vector3f> points,
+                                const Eigen::Vector3d& origin) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(infinity);
+  Eigen::Vector3f high = -low;
+  for (const Eigen::Vector3f& p : points) {
+    if (!p.allFinite()) continue;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {origin + low.cast<double>(), origin + high.cast<double>()};
+}
+
+/// Box of the finite points of a cloud.
+[[nodiscard]] inline box bounds(const cloud& c) { return bounds(c.points, c.origin); }
+
+}  // namespace aib::cloud
+
+// aib/cloud/positions.hpp
+
+namespace aib::cloud {
+
+/// Whether the three coordinates are finite.
+[[nodiscard]] inline bool is_finite(const Eigen::Vector3f& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+}
+
+/// Positions in double as the float points of a cloud, counted from their natural origin.
+struct placed_points {
+  Eigen::Vector3d origin;
+  std::vector<Eigen::Vector3f> points;
+};
+
+/// Places n positions; `position(i)` is called twice for each i. Non-finite positions stay what
+/// they are and have no part in the origin.
+template <class Position>
+[[nodiscard]] placed_points place(std::size_t n, Position&& position) {
+  box all;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d p = position(i);
+    if (p.allFinite()) all.add(p);
+  }
+  placed_points placed;
+  placed.origin = all.empty() ? Eigen::Vector3d(0, 0, 0) : natural_origin(all.low, all.high);
+  placed.points.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d p = position(i) - placed.origin;
+    placed.points[i] = p.cast<float>();
+  }
+  return placed;
+}
+
+/// The cloud of a range of points of any type that `point_traits` knows.
+template <point_range Range>
+[[nodiscard]] cloud from_points(const Range& range) {
+  const auto at = [&](std::size_t i) {
+    using difference = std::ranges::range_difference_t<const Range>;
+    return as_vector<double>(std::ranges::begin(range)[static_cast<difference>(i)]);
+  };
+  placed_points placed = place(static_cast<std::size_t>(std::ranges::size(range)), at);
+  return {.origin = placed.origin, .points = std::move(placed.points)};
+}
+
+/// The finite points of a cloud as floats from a chosen origin. Borrows the cloud where nothing has
+/// to be changed.
+class finite_points {
+ public:
+  finite_points(const cloud& source, const Eigen::Vector3d& origin) : n_given_(source.size()) {
+    if (source.size() > std::numeric_limits<std::uint32_t>::max()) {
+      throw argument_error(
+          message("cloud: at most 4 294 967 295 points expected, found ", source.size()));
+    }
+    if (source.origin == origin && all_finite(source.points)) {
+      borrowed_ = source.points;
+    } else {
+      copy_finite(source, source.origin - origin);
+    }
+  }
+
+  [[nodiscard]] std::span<const Eigen::Vector3f> points() const {
+    return copied_ ? std::span<const Eigen::Vector3f>(own_) : borrowed_;
+  }
+  [[nodiscard]] std::size_t n_given() const { return n_given_; }
+  [[nodiscard]] std::size_t n_dropped() const { return n_given_ - points().size(); }
+
+  /// Index in the cloud of finite point i.
+  [[nodiscard]] std::size_t source_index(std::size_t i) const { return copied_ ? kept_[i] : i; }
+
+ private:
+  static bool all_finite(std::span<const Eigen::Vector3f> points) {
+    for (const Eigen::Vector3f& p : points) {
+      if (!is_finite(p)) return false;
+    }
+    return true;
+  }
+
+  void copy_finite(const cloud& source, const Eigen::Vector3d& shift) {
+    copied_ = true;
+    own_.reserve(source.size());
+    kept_.reserve(source.size());
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      const Eigen::Vector3d moved = shift + source.points[i].cast<double>();
+      const Eigen::Vector3f p = moved.cast<float>();
+      if (!is_finite(p)) continue;
+      own_.push_back(p);
+      kept_.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+
+  std::size_t n_given_;
+  bool copied_ = false;
+  std::span<const Eigen::Vector3f> borrowed_;
+  std::vector<Eigen::Vector3f> own_;
+  std::vector<std::uint32_t> kept_;
+};
+
+}  // namespace aib::cloud
+
+// aib/cloud/distances.hpp
+
+namespace aib::cloud {
+
+/// What becomes of a distance that is not below the maximum.
+enum class beyond_rule {
+  drop,   ///< left out of all statistics but shares (DTU)
+  clamp,  ///< counts as the maximum (CloudCompare)
+};
+
+struct distance_options {
+  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
+  beyond_rule beyond = beyond_rule::drop;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Distances from each point of a cloud to another thing, with their statistics.
+///
+/// Statistics throw undefined_error where no distance counts.
+class distances {
+ public:
+  /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
+  /// brought to one origin in double first.
+  ///
+  /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
+  /// not positive.
+  distances(const cloud& from, const cloud& to, const distance_options& options = {});
+
+  /// Distances that are known: NaN for a point that had none, any value >= max_distance where it is
+  /// that far or farther.
+  explicit distances(std::vector<float> values, const distance_options& options = {});
+
+  /// One value a point of the cloud, in its order: NaN for a point that is not finite; beyond the
+  /// maximum +infinity (drop) or the maximum (clamp).
+  [[nodiscard]] std::span<const float> values() const { return values_; }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] float operator[](std::size_t i) const { return values_[i]; }
+
+  [[nodiscard]] std::size_t n_dropped() const { return n_dropped_; }  ///< not finite
+  [[nodiscard]] std::size_t n_beyond() const { return n_beyond_; }    ///< not below max_distance
+  [[nodiscard]] std::size_t n_finite() const { return size() - n_dropped_; }
+  [[nodiscard]] double share_beyond() const;  ///< of the finite points
+
+  [[nodiscard]] double mean() const;
+  [[nodiscard]] double rmse() const;
+  [[nodiscard]] double max() const;
+  [[nodiscard]] double median() const { return quantile(0.5); }
+  /// q in [0, 1], interpolated linearly.
+  [[nodiscard]] double quantile(double q) const;
+
+  /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
+  /// in the denominator. Throws argument_error if tau is above the maximum.
+  [[nodiscard]] double share_below(double tau) const;
+
+ private:
+  void apply_maximum();
+  void summarize();
+  [[nodiscard]] std::size_t n_counted() const;
+  void demand_values(const char* what) const;
+
+  std::vector<float> values_;
+  distance_options options_;
+  std::size_t n_dropped_ = 0;
+  std::size_t n_beyond_ = 0;
+  double sum_ = 0;
+  double sum_of_squares_ = 0;
+  double max_ = 0;
+};
+
+namespace detail {
+
+inline constexpr std::size_t value_chunk = 1 << 16;
+
+inline void demand_points(const char* function, const char* which, const finite_points& p) {
+  if (p.points().empty()) {
+    throw undefined_error(message(function, ": no finite point in the ", which, " cloud (",
+                                  p.n_given(), " points, ", p.n_dropped(), " not finite)"));
+  }
+}
+
+inline void check_maximum(const distance_options& options) {
+  if (options.max_distance && !(*options.max_distance > 0)) {
+    throw argument_error(
+        message("cloud::distances: max_distance > 0 expected, found ", *options.max_distance));
+  }
+}
+
+/// A float not below the square of the largest distance that counts.
+inline float squared_bound(const distance_options& options) {
+  if (!options.max_distance) return std::numeric_limits<float>::infinity();
+  const double reach = *options.max_distance * (1 + 1e-6);
+  const double largest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::min(reach * reach, largest));
+}
+
+/// Distances in the order of the cloud, of squares in the order of its finite points.
+inline std::vector<float> roots_in_place(const finite_points& from, std::vector<float> squared) {
+  for (float& d : squared) d = std::sqrt(d);
+  if (from.n_dropped() == 0) return squared;
+  std::vector<float> values(from.n_given(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < squared.size(); ++i) values[from.source_index(i)] = squared[i];
+  return values;
+}
+
+inline search::nearest_options search_options(const distance_options& options) {
+  return {.squared_bound = squared_bound(options),
+          .threads = options.threads,
+          .control = options.control};
+}
+
+}  // namespace detail
+
+inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
+    : options_(options) {
+  detail::check_maximum(options);
+  const finite_points a(from, to.origin);
+  const finite_points b(to, to.origin);
+  detail::demand_points("cloud::distances", "first", a);
+  detail::demand_points("cloud::distances", "second", b);
+  const search::curve order = search::common_curve(a.points(), b.points());
+  const search::box_tree queries(a.points(), order, options.threads, options.control);
+  const search::box_tree targets(b.points(), order, options.threads, options.control);
+  values_ = detail::roots_in_place(
+      a, search::nearest_squared(queries, targets, detail::search_options(options)));
+  apply_maximum();
+  summarize();
+}
+
+inline distances::distances(std::vector<float> values, const distance_options& options)
+    : values_(std::move(values)), options_(options) {
+  detail::check_maximum(options);
+  apply_maximum();
+  summarize();
+}
+
+inline void distances::apply_maximum() {
+  if (!options_.max_distance) return;
+  const bool drop = options_.beyond == beyond_rule::drop;
+  const float beyond =
+      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
+  for (float& value : values_) {
+    if (static_cast<double>(value) >= *options_.max_distance) {
+      value = beyond;
+      ++n_beyond_;
+    }
+  }
+}
+
+inline void distances::summarize() {
+  struct sums {
+    std::size_t dropped = 0;
+    double sum = 0, squares = 0, max = 0;
+  };
+  const bool skip_infinite = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const auto sum_chunk = [&](const chunk& c) {
+    sums s;
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const double d = values_[i];
+      if (std::isnan(d)) ++s.dropped;
+      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
+      s.sum += d;
+      s.squares += d * d;
+      s.max = std::max(s.max, d);
+    }
+    return s;
+  };
+  const auto combine = [](sums a, const sums& b) {
+    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
+                std::max(a.max, b.max)};
+  };
+  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                                   sums{}, sum_chunk, combine);
+  n_dropped_ = total.dropped;
+  sum_ = total.sum;
+  sum_of_squares_ = total.squares;
+  max_ = total.max;
+}
+
+inline std::size_t distances::n_counted() const {
+  const bool drop = options_.max_distance && options_.beyond == beyond_rule::drop;
+  return n_finite() - (drop ? n_beyond_ : 0);
+}
+
+inline void distances::demand_values(const char* what) const {
+  if (n_counted() > 0) return;
+  throw undefined_error(message("cloud::distances: no distance to take the ", what, " of (", size(),
+                                " points, ", n_dropped_, " not finite, ", n_beyond_,
+                                " beyond max_distance)"));
+}
+
+inline double distances::share_beyond() const {
+  if (n_finite() == 0) demand_values("share");
+  return static_cast<double>(n_beyond_) / static_cast<double>(n_finite());
+}
+
+inline double distances::mean() const {
+  demand_values("mean");
+  return sum_ / static_cast<double>(n_counted());
+}
+
+inline double distances::rmse() const {
+  demand_values("root mean square");
+  return std::sqrt(sum_of_squares_ / static_cast<double>(n_counted()));
+}
+
+inline double distances::max() const {
+  demand_values("maximum");
+  return max_;
+}
+
+inline double distances::quantile(double q) const {
+  demand_values("quantile");
+  std::vector<float> counted;
+  counted.reserve(n_counted());
+  const bool all = n_counted() == n_finite();
+  std::copy_if(values_.begin(), values_.end(), std::back_inserter(counted),
+               [&](float d) { return !std::isnan(d) && (all || !std::isinf(d)); });
+  return stats::quantile_in_place<float>(counted, q);
+}
+
+inline double distances::share_below(double tau) const {
+  if (n_finite() == 0) demand_values("share");
+  if (options_.max_distance && tau > *options_.max_distance) {
+    throw argument_error(
+        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
+  }
+  const auto count_chunk = [&](const chunk& c) {
+    std::size_t n = 0;
+    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
+    return n;
+  };
+  const std::size_t below =
+      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
+                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
+  return static_cast<double>(below) / static_cast<double>(n_finite());
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/compare.hpp
+
+namespace aib::cloud {
+
+struct compare_options {
+  std::vector<double> tau = {};             ///< thresholds of precision, recall and F-score
+  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
+  beyond_rule beyond = beyond_rule::drop;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Scores at one threshold.
+/// Source: Knapitsch et al., "Tanks and Temples", SIGGRAPH 2017, section 4.
+struct threshold_scores {
+  double tau;
+  double precision;  ///< share of the estimate strictly below tau of the reference
+  double recall;     ///< share of the reference strictly below tau of the estimate
+  double f_score;    ///< harmonic mean of both; 0 where both are 0
+};
+
+/// How an estimated cloud differs from a reference. Lengths in the unit of the clouds.
+struct comparison {
+  double accuracy;      ///< mean distance from the estimate to the reference
+  double completeness;  ///< mean distance from the reference to the estimate
+  double chamfer;       ///< sum of both
+  double chamfer_mean;  ///< half of it
+  double f1_distance;   ///< harmonic mean of both, a length; 0 where both are 0
+  double accuracy_median;
+  double completeness_median;
+  double accuracy_rmse;
+  double completeness_rmse;
+  double hausdorff;                      ///< the larger of both directed maxima
+  std::vector<threshold_scores> scores;  ///< one a threshold, in the order asked for
+  std::size_t n_estimate;                ///< points that were compared
+  std::size_t n_reference;
+  std::size_t n_dropped;    ///< points of both clouds that are not finite
+  double estimate_beyond;   ///< share of the estimate not below max_distance
+  double reference_beyond;  ///< share of the reference not below max_distance
+};
+
+/// Distances in both directions, each cloud sorted and indexed once.
+struct two_way_distances {
+  distances to_reference;  ///< of the points of the estimate
+  distances to_estimate;   ///< of the points of the reference
+};
+
+namespace detail {
+
+inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
+
+}  // namespace detail
+
+/// Distances from the estimate to the reference and back.
+/// Throws undefined_error if either cloud has no finite point.
+[[nodiscard]] inline two_way_distances distances_both_ways(const cloud& estimate,
+                                                           const cloud& reference,
+                                                           const distance_options& options = {}) {
+  detail::check_maximum(options);
+  const finite_points e(estimate, reference.origin);
+  const finite_points r(reference, reference.origin);
+  detail::demand_points("cloud::compare", "estimated", e);
+  detail::demand_points("cloud::compare", "reference", r);
+  const search::curve order = search::common_curve(e.points(), r.points());
+  const search::box_tree e_tree(e.points(), order, options.threads, options.control);
+  const search::box_tree r_tree(r.points(), order, options.threads, options.control);
+  const auto search = detail::search_options(options);
+  return {distances(detail::roots_in_place(e, search::nearest_squared(e_tree, r_tree, search)),
+                    options),
+          distances(detail::roots_in_place(r, search::nearest_squared(r_tree, e_tree, search)),
+                    options)};
+}
+
+/// The scores of distances in both directions, wherever they come from.
+[[nodiscard]] inline comparison score(const distances& to_reference,
+                                      const distances& to_estimate,
+                                      std::span<const double> tau = {}) {
+  const double accuracy = to_reference.mean();
+  const double completeness = to_estimate.mean();
+  comparison c{.accuracy = accuracy,
+               .completeness = completeness,
+               .chamfer = accuracy + completeness,
+               .chamfer_mean = (accuracy + completeness) / 2,
+               .f1_distance = detail::harmonic_mean(accuracy, completeness),
+               .accuracy_median = to_reference.median(),
+               .completeness_median = to_estimate.median(),
+               .accuracy_rmse = to_reference.rmse(),
+               .completeness_rmse = to_estimate.rmse(),
+               .hausdorff = std::max(to_reference.max(), to_estimate.max()),
+               .scores = {},
+               .n_estimate = to_reference.n_finite(),
+               .n_reference = to_estimate.n_finite(),
+               .n_dropped = to_reference.n_dropped() + to_estimate.n_dropped(),
+               .estimate_beyond = to_reference.share_beyond(),
+               .reference_beyond = to_estimate.share_beyond()};
+  for (const double t : tau) {
+    const double precision = to_reference.share_below(t);
+    const double recall = to_estimate.share_below(t);
+    c.scores.push_back({t, precision, recall, detail::harmonic_mean(precision, recall)});
+  }
+  return c;
+}
+
+/// Compares an estimated cloud with a reference: every metric of point clouds from one search.
+///
+/// Nothing is aligned. A reference sampled from a surface puts a floor under accuracy, see
+/// sample::mesh; mesh::compare has none.
+/// Throws undefined_error if either cloud has no finite point, argument_error if a tau is above
+/// max_distance.
+[[nodiscard]] inline comparison compare(const cloud& estimate,
+                                        const cloud& reference,
+                                        const compare_options& options = {}) {
+  const auto both = distances_both_ways(estimate, reference,
+                                        {.max_distance = options.max_distance,
+                                         .beyond = options.beyond,
+                                         .threads = options.threads,
+                                         .control = options.control});
+  return score(both.to_reference, both.to_estimate, options.tau);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/transform.hpp
+
+namespace aib::cloud {
+
+/// The cloud in frame b. Points are moved in double and counted from their new natural origin,
+/// normals are turned.
+[[nodiscard]] inline cloud operator*(const math::sim3& b_from_a, const cloud& in_a) {
+  placed_points placed =
+      place(in_a.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
+  cloud in_b = in_a;
+  in_b.origin = placed.origin;
+  in_b.points = std::move(placed.points);
+  const Eigen::Matrix3f rotation = b_from_a.rotation.cast<float>();
+  for (Eigen::Vector3f& normal : in_b.normals) normal = (rotation * normal).eval();
+  return in_b;
+}
+
+[[nodiscard]] inline cloud operator*(const math::rigid3& b_from_a, const cloud& in_a) {
+  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
+}
+
+}  // namespace aib::cloud
+
 // aib/mesh/mesh.hpp
 
 namespace aib::mesh {
@@ -1420,6 +5259,767 @@ struct mesh {
 };
 
 }  // namespace aib::mesh
+
+// aib/mesh/surface.hpp
+
+namespace aib::mesh {
+
+/// Corners of a triangle, counted from the origin of its mesh.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 3> corners(const mesh& m, std::size_t t) {
+  const auto& [a, b, c] = m.triangles[t];
+  return {m.vertices[a].cast<double>(), m.vertices[b].cast<double>(), m.vertices[c].cast<double>()};
+}
+
+/// Area of a triangle; 0 where a corner is not finite.
+[[nodiscard]] inline double area(const mesh& m, std::size_t t) {
+  const auto [a, b, c] = corners(m, t);
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const double twice = ab.cross(ac).norm();
+  return std::isfinite(twice) ? twice / 2 : 0;
+}
+
+/// Area of all triangles.
+[[nodiscard]] inline double area(const mesh& m) {
+  double total = 0;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) total += area(m, t);
+  return total;
+}
+
+}  // namespace aib::mesh
+
+// aib/mesh/transform.hpp
+
+namespace aib::mesh {
+
+/// The mesh in frame b. Vertices are moved in double and counted from their new natural origin.
+[[nodiscard]] inline mesh operator*(const math::sim3& b_from_a, const mesh& in_a) {
+  cloud::placed_points placed = cloud::place(
+      in_a.vertices.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
+  mesh in_b = in_a;
+  in_b.origin = placed.origin;
+  in_b.vertices = std::move(placed.points);
+  return in_b;
+}
+
+[[nodiscard]] inline mesh operator*(const math::rigid3& b_from_a, const mesh& in_a) {
+  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
+}
+
+}  // namespace aib::mesh
+
+// aib/align/outliers.hpp
+
+namespace aib::align {
+
+struct outlier_options {
+  std::optional<double> factor = {};    ///< of the median distance, e.g. 3
+  std::optional<double> distance = {};  ///< absolute, unit of the positions
+};
+
+/// Distances of positions from their component-wise median, and those that are kept.
+struct outlier_split {
+  Eigen::Vector3d median_position;
+  double median_distance;
+  std::vector<std::size_t> kept;     ///< distance <= every limit that is set
+  std::vector<std::size_t> removed;  ///< ascending, as kept
+};
+
+/// One pass. Throws undefined_error if there is no position.
+inline outlier_split split_outliers(std::span<const Eigen::Vector3d> positions,
+                                    const outlier_options& options) {
+  outlier_split out;
+  std::vector<double> values(positions.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < positions.size(); ++i) values[i] = positions[i][axis];
+    out.median_position[axis] = stats::quantile_in_place<double>(values, 0.5);
+  }
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& p : positions) distances.push_back((p - out.median_position).norm());
+  out.median_distance = stats::median<double>(distances);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double limit = std::min(options.factor ? *options.factor * out.median_distance : infinity,
+                                options.distance.value_or(infinity));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    (distances[i] <= limit ? out.kept : out.removed).push_back(i);
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/align/spread.hpp
+
+namespace aib::align {
+
+namespace detail {
+
+/// Turns columns a and b of the rows until they are orthogonal; whether they were not.
+inline bool orthogonalize(std::vector<Eigen::Vector3d>& rows, Eigen::Matrix3d& axes, int a, int b) {
+  double aa = 0, bb = 0, ab = 0;
+  for (const Eigen::Vector3d& row : rows) {
+    aa += row[a] * row[a];
+    bb += row[b] * row[b];
+    ab += row[a] * row[b];
+  }
+  if (!(std::abs(ab) > 1e-15 * std::sqrt(aa) * std::sqrt(bb))) return false;
+  const double slope = (bb - aa) / (2 * ab);
+  const double tangent = std::copysign(1 / (std::abs(slope) + std::hypot(1, slope)), slope);
+  const double cosine = 1 / std::hypot(1, tangent), sine = cosine * tangent;
+  const auto turn = [&](auto&& row) {
+    const double from_a = row[a], from_b = row[b];
+    row[a] = cosine * from_a - sine * from_b;
+    row[b] = sine * from_a + cosine * from_b;
+  };
+  for (Eigen::Vector3d& row : rows) turn(row);
+  for (int r = 0; r < 3; ++r) turn(axes.row(r));
+  return true;
+}
+
+}  // namespace detail
+
+/// How points lie about their mean: along which axes, how far.
+struct spread {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d axes;             ///< columns, longest first
+  Eigen::Vector3d singular_values;  ///< of the centred points, descending; square sums of the axes
+  double rounding;                  ///< singular value that rounding of the coordinates can give
+
+  /// Second singular value over the first: 0 for points on a line or in one place.
+  [[nodiscard]] double ratio() const {
+    if (!(singular_values[0] > rounding) || !(singular_values[1] > rounding)) return 0;
+    return singular_values[1] / singular_values[0];
+  }
+  /// First singular value over the second: how much worse the turn about the long axis is known.
+  [[nodiscard]] double condition() const {
+    return ratio() > 0 ? 1 / ratio() : std::numeric_limits<double>::infinity();
+  }
+};
+
+/// Of the centred points themselves, not of their covariance: a square would hide everything below
+/// 1e-8. Throws argument_error if a point is not finite, undefined_error if there is none.
+/// Source: Hestenes, "Inversion of matrices by biorthogonalization", 1958 (one-sided Jacobi).
+inline spread spread_of(std::span<const Eigen::Vector3d> points) {
+  if (points.empty()) throw undefined_error("align: no points");
+  const auto n = static_cast<double>(points.size());
+  spread out{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 0};
+  double largest = 0;
+  for (const Eigen::Vector3d& p : points) {
+    if (!p.allFinite()) throw argument_error("align: a point is not finite");
+    out.mean += p / n;
+    largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  }
+  out.rounding = 4 * std::numeric_limits<double>::epsilon() * largest * std::sqrt(n);
+  std::vector<Eigen::Vector3d> rows;
+  for (const Eigen::Vector3d& p : points) rows.push_back(p - out.mean);
+  bool turned = true;
+  for (int sweep = 0; sweep < 30 && turned; ++sweep) {
+    turned = false;
+    for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
+      turned = detail::orthogonalize(rows, out.axes, a, b) || turned;
+  }
+  for (const Eigen::Vector3d& row : rows) out.singular_values += row.cwiseAbs2();
+  out.singular_values = out.singular_values.cwiseSqrt();
+  for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+    if (out.singular_values[a] >= out.singular_values[b]) continue;
+    std::swap(out.singular_values[a], out.singular_values[b]);
+    out.axes.col(a).swap(out.axes.col(b));
+  }
+  for (int axis = 0; axis < 3; ++axis) {  // the largest component points forward
+    Eigen::Index at = 0;
+    out.axes.col(axis).cwiseAbs().maxCoeff(&at);
+    if (out.axes(at, axis) < 0) out.axes.col(axis) *= -1;
+  }
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/align/umeyama.hpp
+
+namespace aib::align {
+
+/// When points are too close to a line to tell a rotation.
+enum class rank_rule {
+  relative,  ///< second singular value of either side's positions below 1e-10 of the first
+  evo,       ///< fewer than two singular values of the covariance above 2.2e-16, whatever the unit
+};
+
+/// A second singular value of this share of the first is refused.
+inline constexpr double refused_ratio = 1e-10;
+
+/// A second singular value of this share of the first is worth a warning.
+inline constexpr double doubted_ratio = 1e-2;
+
+struct umeyama_options {
+  bool scale = true;  ///< false: rigid, scale 1
+  rank_rule convention = rank_rule::relative;
+};
+
+namespace detail {
+
+/// The proper rotation R that maximises tr(R^T matrix).
+/// Source: Umeyama, "Least-squares estimation of transformation parameters between two point
+/// patterns", PAMI 1991, Eq. (40)-(43); Markley 1988.
+struct best_rotation {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d signed_singular_values;
+
+  explicit best_rotation(const Eigen::Matrix3d& matrix) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1, 1);
+    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
+    rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    signed_singular_values = svd.singularValues().cwiseProduct(sign);
+  }
+};
+
+/// Two sets of points about their means: covariance 1/n sum (y - my)(x - mx)^T, variance of x.
+struct paired_moments {
+  Eigen::Vector3d estimate_mean = Eigen::Vector3d::Zero(), reference_mean = estimate_mean;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double estimate_variance = 0;
+
+  paired_moments(std::span<const Eigen::Vector3d> estimate,
+                 std::span<const Eigen::Vector3d> reference) {
+    const auto n = static_cast<double>(estimate.size());
+    for (const Eigen::Vector3d& x : estimate) estimate_mean += x / n;
+    for (const Eigen::Vector3d& y : reference) reference_mean += y / n;
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      const Eigen::Vector3d x = estimate[i] - estimate_mean, y = reference[i] - reference_mean;
+      covariance += y * x.transpose() / n;
+      estimate_variance += x.squaredNorm() / n;
+    }
+  }
+
+  /// The transform with this rotation and scale that moves mean to mean.
+  [[nodiscard]] math::sim3 centred(double scale, const Eigen::Matrix3d& rotation) const {
+    return {scale, rotation, reference_mean - scale * (rotation * estimate_mean)};
+  }
+};
+
+inline void check_pairs(std::string_view who, std::size_t n_estimate, std::size_t n_reference) {
+  if (n_estimate != n_reference) {
+    throw argument_error(message(who, ": as many estimated as reference points expected, found ",
+                                 n_estimate, " and ", n_reference));
+  }
+  if (n_estimate == 0) throw undefined_error(message(who, ": no points"));
+}
+
+inline void refuse_a_line(std::string_view who, std::string_view side, const spread& s) {
+  if (s.ratio() >= refused_ratio) return;
+  const Eigen::Vector3d axis = s.axes.col(0);
+  if (!(s.singular_values[0] > s.rounding))
+    throw undefined_error(message(who, ": the positions of the ", side, " are all in one place"));
+  throw undefined_error(message(who, ": the positions of the ", side,
+                                " lie on a line: the turn about (", axis[0], ", ", axis[1], ", ",
+                                axis[2], ") is free"));
+}
+
+inline void refuse_as_evo(const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d d = Eigen::JacobiSVD<Eigen::Matrix3d>(covariance).singularValues();
+  if (d[1] > std::numeric_limits<double>::epsilon()) return;
+  throw undefined_error(message("umeyama: degenerate covariance rank, singular values ", d[0], ", ",
+                                d[1], ", ", d[2]));
+}
+
+}  // namespace detail
+
+/// The similarity ref_from_est that minimises sum |ref - (s R est + t)|^2 over paired points.
+///
+/// estimate, reference   n x 3 each, any units
+///
+/// The rotation is proper also for mirrored points. Throws argument_error if the lengths differ or
+/// a point is not finite, undefined_error if the positions of a side lie on a line (see rank_rule).
+/// Source: Umeyama, PAMI 1991, Eq. (40)-(43).
+inline math::sim3 umeyama(std::span<const Eigen::Vector3d> estimate,
+                          std::span<const Eigen::Vector3d> reference,
+                          const umeyama_options& options = {}) {
+  detail::check_pairs("umeyama", estimate.size(), reference.size());
+  const spread estimate_spread = spread_of(estimate), reference_spread = spread_of(reference);
+  const detail::paired_moments m(estimate, reference);
+  if (options.convention == rank_rule::evo) {
+    detail::refuse_as_evo(m.covariance);
+  } else {
+    detail::refuse_a_line("umeyama", "estimate", estimate_spread);
+    detail::refuse_a_line("umeyama", "reference", reference_spread);
+  }
+  const detail::best_rotation best(m.covariance);
+  const double scale =
+      options.scale ? best.signed_singular_values.sum() / m.estimate_variance : 1.0;
+  return m.centred(scale, best.rotation);
+}
+
+/// As above, from any ranges of points.
+template <point_range Estimate, point_range Reference>
+math::sim3 umeyama(const Estimate& estimate,
+                   const Reference& reference,
+                   const umeyama_options& options = {}) {
+  const auto vectors = [](const auto& range) {
+    std::vector<Eigen::Vector3d> out;
+    out.reserve(std::ranges::size(range));
+    for (const auto& p : range) out.push_back(as_vector<double>(p));
+    return out;
+  };
+  const std::vector<Eigen::Vector3d> e = vectors(estimate), r = vectors(reference);
+  return umeyama(std::span<const Eigen::Vector3d>(e), std::span<const Eigen::Vector3d>(r), options);
+}
+
+}  // namespace aib::align
+
+// aib/align/pose_fit.hpp
+
+namespace aib::align {
+
+/// What an alignment may change.
+enum class align_mode {
+  sim3,   ///< rotation, translation, scale
+  se3,    ///< rotation, translation
+  yaw,    ///< the turn about the vertical, translation: both worlds know where down is
+  scale,  ///< scale alone, as evo's --correct_scale without --align
+  first,  ///< the rigid motion that lays the first pose of the one on that of the other
+};
+
+struct fit_options {
+  align_mode mode = align_mode::sim3;
+  double rotation_weight = 0;  ///< sim3, se3: > 0: orientations count, a radian as this length
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw: the vertical of both worlds
+  rank_rule convention = rank_rule::relative;
+};
+
+/// Paired world_from_camera poses, and fits of ref_from_est to some of them.
+class pose_fit {
+ public:
+  /// estimate, reference   as long, finite
+  pose_fit(std::span<const math::rigid3> estimate,
+           std::span<const math::rigid3> reference,
+           const fit_options& options)
+      : estimate_(estimate), reference_(reference), options_(options) {}
+
+  /// Throws undefined_error if the chosen poses do not tell the transform.
+  [[nodiscard]] math::sim3 operator()(std::span<const std::size_t> chosen) const;
+
+  /// Distance that a transform leaves between the positions of a pose.
+  [[nodiscard]] double residual(const math::sim3& ref_from_est, std::size_t i) const {
+    return (ref_from_est * estimate_[i].translation - reference_[i].translation).norm();
+  }
+
+  [[nodiscard]] std::vector<Eigen::Vector3d> estimate(std::span<const std::size_t> chosen) const {
+    return positions(estimate_, chosen);
+  }
+  [[nodiscard]] std::vector<Eigen::Vector3d> reference(std::span<const std::size_t> chosen) const {
+    return positions(reference_, chosen);
+  }
+
+ private:
+  static std::vector<Eigen::Vector3d> positions(std::span<const math::rigid3> poses,
+                                                std::span<const std::size_t> chosen) {
+    std::vector<Eigen::Vector3d> out;
+    for (const std::size_t i : chosen) out.push_back(poses[i].translation);
+    return out;
+  }
+  [[nodiscard]] math::sim3 with_rotations(std::span<const std::size_t> chosen) const;
+  [[nodiscard]] math::sim3 about_vertical(std::span<const std::size_t> chosen) const;
+
+  std::span<const math::rigid3> estimate_, reference_;
+  fit_options options_;
+};
+
+inline math::sim3 pose_fit::operator()(std::span<const std::size_t> chosen) const {
+  if (chosen.empty()) throw undefined_error("align: no pose");
+  if (options_.mode == align_mode::first) {
+    const math::rigid3 moved = reference_[chosen.front()] * estimate_[chosen.front()].inverse();
+    return {1, moved.rotation, moved.translation};
+  }
+  if (options_.mode == align_mode::yaw) return about_vertical(chosen);
+  const bool turns = options_.mode != align_mode::scale;
+  if (turns && options_.rotation_weight > 0) return with_rotations(chosen);
+  const math::sim3 fitted =
+      umeyama(estimate(chosen), reference(chosen),
+              {.scale = options_.mode != align_mode::se3, .convention = options_.convention});
+  return turns ? fitted : math::sim3{.scale = fitted.scale};
+}
+
+/// Minimises sum |y - (s R x + t)|^2 + w^2 |angle(R Rx, Ry)|^2 (chordal), rotation and scale in
+/// turns. Orientations tell what positions on a line leave free.
+inline math::sim3 pose_fit::with_rotations(std::span<const std::size_t> chosen) const {
+  const std::vector<Eigen::Vector3d> x = estimate(chosen), y = reference(chosen);
+  const detail::paired_moments m(x, y);
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : chosen)
+    turned += reference_[i].rotation * estimate_[i].rotation.transpose();
+  const double w = options_.rotation_weight;
+  turned *= w * w / (2 * static_cast<double>(chosen.size()));
+  if (options_.mode == align_mode::se3)
+    return m.centred(1, detail::best_rotation(m.covariance + turned).rotation);
+  if (const spread s = spread_of(x); !(s.singular_values[0] > s.rounding))
+    throw undefined_error("align: the positions of the estimate are all in one place: no scale");
+  double scale = 1;
+  Eigen::Matrix3d rotation = detail::best_rotation(turned).rotation;
+  for (int round = 0; round < 100; ++round) {
+    const double before = scale;
+    scale = (rotation.transpose() * m.covariance).trace() / m.estimate_variance;
+    rotation = detail::best_rotation(scale * m.covariance + turned).rotation;
+    if (std::abs(scale - before) <= 1e-15 * std::abs(scale)) break;
+  }
+  if (!(scale > 0)) {
+    throw undefined_error(
+        message("align: positions and orientations contradict each other, scale ", scale));
+  }
+  return m.centred(scale, rotation);
+}
+
+/// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation", IROS 2018,
+/// Sec. III-C.
+inline math::sim3 pose_fit::about_vertical(std::span<const std::size_t> chosen) const {
+  const Eigen::Vector3d up = options_.up.normalized();
+  if (!up.allFinite()) throw argument_error("align: up has no direction");
+  const detail::paired_moments m(estimate(chosen), reference(chosen));
+  const Eigen::Matrix3d& c = m.covariance;
+  // sum y . R x = cos a tr((I - up up^T) C) + sin a (up . sum x cross y) + constant
+  const Eigen::Vector3d cross(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
+  const double cosine = c.trace() - up.dot(c * up), sine = up.dot(cross);
+  if (!(std::hypot(cosine, sine) > refused_ratio * c.norm()))
+    throw undefined_error("align: the positions leave the turn about the vertical free");
+  const Eigen::Vector3d turn = std::atan2(sine, cosine) * up;
+  return m.centred(1, math::rotation_from(turn));
+}
+
+}  // namespace aib::align
+
+// aib/align/ransac.hpp
+
+namespace aib::align {
+
+struct ransac_options {
+  double distance = 0;  ///< inliers lie within it, unit of the reference; 0: told from the data
+  std::size_t iterations = 1000;
+  std::uint64_t seed = 1;
+};
+
+/// The poses among `chosen` that agree with one transform, ascending.
+///
+/// With `distance` the transform of three poses that most poses agree with (RANSAC); without, the
+/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations.
+/// Then fit and inliers in turns until they no longer change.
+/// Throws undefined_error if no three poses tell a transform.
+/// Source: Fischler and Bolles, CACM 1981; Rousseeuw, "Least median of squares regression", 1984.
+inline std::vector<std::size_t> consensus(const pose_fit& fit,
+                                          std::span<const std::size_t> chosen,
+                                          const ransac_options& options = {}) {
+  const auto residuals = [&](const math::sim3& ref_from_est) {
+    std::vector<double> out;
+    for (const std::size_t i : chosen) out.push_back(fit.residual(ref_from_est, i));
+    return out;
+  };
+  const auto cost = [&](std::vector<double> r) {
+    if (options.distance > 0) {
+      return -static_cast<double>(
+          std::count_if(r.begin(), r.end(), [&](double d) { return d <= options.distance; }));
+    }
+    return stats::quantile_in_place<double>(r, 0.5, stats::quantile_rule::lower);
+  };
+  random_engine random(options.seed);
+  math::sim3 best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < options.iterations && chosen.size() >= 3; ++k) {
+    std::array<std::size_t, 3> sample;
+    for (std::size_t& s : sample) s = chosen[random.below(chosen.size())];
+    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
+    try {
+      const math::sim3 candidate = fit(sample);
+      const double c = cost(residuals(candidate));
+      if (c < least) {
+        least = c;
+        best = candidate;
+      }
+    } catch (const undefined_error&) {  // three poses on a line
+    }
+  }
+  if (!std::isfinite(least))
+    throw undefined_error("align: robust: no three poses tell a transform");
+  const double n = static_cast<double>(chosen.size());
+  const double sigma = 1.4826 * (1 + 5 / std::max(1.0, n - 3)) * least;  // Rousseeuw, Eq. (1.3)
+  const double limit = options.distance > 0 ? options.distance : 2.5 * sigma;
+  std::vector<std::size_t> inliers;
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::size_t> next;
+    for (const std::size_t i : chosen) {
+      if (fit.residual(best, i) <= limit) next.push_back(i);
+    }
+    if (next == inliers || next.size() < 3) break;
+    inliers = std::move(next);
+    best = fit(inliers);
+  }
+  return inliers;
+}
+
+}  // namespace aib::align
+
+// aib/align/trajectory.hpp
+
+namespace aib::align {
+
+struct trajectory_options {
+  fit_options fit = {};
+  std::size_t n = 0;              ///< fit to the first n registered frames; 0: to all
+  outlier_options outliers = {};  ///< nothing is removed unless asked
+  std::optional<ransac_options> robust = {};
+  double stand_off = 10;  ///< distance at which the error of a turn is foretold, reference's unit
+};
+
+/// How one trajectory lies in the world of another.
+struct alignment {
+  math::sim3 transform;               ///< ref_from_est
+  std::size_t n_inliers;              ///< frames that the fit used
+  std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
+  double rmse;                        ///< of the inliers' positions, unit of the reference
+  double condition;   ///< first over second singular value of the positions, of the worse side
+  double turn_deg;    ///< expected error of the turn about the long axis of the positions, <= 90
+  double turn_error;  ///< what that moves a point `stand_off` away from the axis
+  std::vector<std::string> warnings;
+};
+
+/// Fits ref_from_est to the positions (and, if asked, orientations) of associated trajectories.
+/// Frames without a finite pose are passed over.
+///
+/// Throws argument_error if the trajectories are not associated, undefined_error if the frames do
+/// not tell the transform: the message names what is free.
+alignment trajectory(const pose::trajectory& estimate,
+                     const pose::trajectory& reference,
+                     const trajectory_options& options = {});
+
+namespace detail {
+
+/// Distances from the long axis of the positions, root of their square sum.
+inline double lever(const spread& s) {
+  return std::hypot(s.singular_values[1], s.singular_values[2]);
+}
+
+/// Standard deviation of the turn about the long axis, radians, at most a right angle: the residual
+/// of a coordinate over the lever.
+inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t parameters) {
+  constexpr double right_angle = std::numbers::pi / 2;
+  const double freedom = 3 * static_cast<double>(n) - static_cast<double>(parameters);
+  if (!(freedom > 0) || !(lever > 0)) return right_angle;
+  return std::min(right_angle, std::sqrt(sse / freedom) / lever);
+}
+
+inline std::string vector_text(const Eigen::Vector3d& v) {
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000; };
+  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
+}
+
+/// The scale that the median distances from the median positions tell.
+inline double scale_of_medians(std::span<const Eigen::Vector3d> estimate,
+                               std::span<const Eigen::Vector3d> reference) {
+  return split_outliers(reference, {}).median_distance /
+         split_outliers(estimate, {}).median_distance;
+}
+
+}  // namespace detail
+
+inline alignment trajectory(const pose::trajectory& estimate,
+                            const pose::trajectory& reference,
+                            const trajectory_options& options) {
+  const pose::registered_frames frames = pose::registered("align::trajectory", estimate, reference);
+  const pose_fit fit(frames.estimate, frames.reference, options.fit);
+  std::vector<std::size_t> offered(frames.index.size());
+  if (options.n > 0) offered.resize(std::min(options.n, offered.size()));
+  std::iota(offered.begin(), offered.end(), std::size_t{0});
+  if (offered.empty()) {
+    throw undefined_error(message("align::trajectory: none of ", estimate.size(),
+                                  " frames has a finite pose on both sides"));
+  }
+  std::vector<std::size_t> used = options.outliers.factor || options.outliers.distance
+                                      ? split_outliers(fit.estimate(offered), options.outliers).kept
+                                      : offered;
+  if (options.robust) used = consensus(fit, used, *options.robust);
+
+  alignment out{.transform = fit(used),
+                .n_inliers = used.size(),
+                .outliers = {},
+                .rmse = 0,
+                .condition = 1,
+                .turn_deg = 0,
+                .turn_error = 0,
+                .warnings = {}};
+  std::vector<std::size_t> left_out;
+  std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
+                      std::back_inserter(left_out));
+  for (const std::size_t i : left_out) out.outliers.push_back(frames.index[i]);
+  double sse = 0;
+  for (const std::size_t i : used) {
+    const double r = fit.residual(out.transform, i);
+    sse += r * r;
+  }
+  out.rmse = std::sqrt(sse / static_cast<double>(used.size()));
+  if (options.fit.mode == align_mode::first) return out;
+
+  const std::vector<Eigen::Vector3d> x = fit.estimate(used), y = fit.reference(used);
+  const spread s = spread_of(x), s_reference = spread_of(y);
+  out.condition = std::max(s.condition(), s_reference.condition());
+  const bool turns = options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::se3;
+  if (turns && !(options.fit.rotation_weight > 0)) {
+    // Of both sides the thinner: noise widens a line, it never narrows one.
+    const double turn = detail::turn_sigma(
+        std::min(out.transform.scale * detail::lever(s), detail::lever(s_reference)), sse,
+        used.size(), options.fit.mode == align_mode::sim3 ? 7 : 6);
+    out.turn_deg = math::degrees(turn);
+    out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
+    if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
+      const Eigen::Vector3d axis = s_reference.axes.col(0);
+      out.warnings.push_back(message(
+          "positions lie nearly on a line (condition ", std::round(out.condition),
+          "): the turn about ", detail::vector_text(axis), " is known to +-",
+          std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
+          " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
+    }
+  }
+  if (options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::scale) {
+    const double expected = detail::scale_of_medians(x, y);
+    const double off = out.transform.scale / expected;
+    if (std::isfinite(expected) && (off < 0.5 || off > 2)) {
+      out.warnings.push_back(message("the fitted scale ", out.transform.scale, " is far from the ",
+                                     expected, " of the median distances: outliers rule the fit; ",
+                                     "see outlier_factor and robust"));
+    }
+  }
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/sample/mesh.hpp
+
+namespace aib::sample {
+
+/// How many points; exactly one of the three is given.
+struct mesh_options {
+  std::optional<std::size_t> n = {};    ///< this many
+  std::optional<double> spacing = {};   ///< one a square of this side, in the unit of the mesh
+  std::optional<double> per_area = {};  ///< this many a square unit
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: all
+};
+
+/// Points on a surface and how densely they lie.
+struct mesh_samples {
+  cloud::cloud points;  ///< with face normals, and labels where the mesh has them
+  double area;          ///< of the mesh, square units
+  double density;       ///< points a square unit
+  /// Mean distance from a point of the surface to the nearest of randomly placed samples,
+  /// 0.5 / sqrt(density): below it an accuracy against these samples says nothing.
+  double floor;
+};
+
+/// Mean distance from a point of a surface to the nearest of randomly placed samples.
+[[nodiscard]] inline double sampling_floor(double density) { return 0.5 / std::sqrt(density); }
+
+/// Points on a mesh, uniform by area. A triangle of area a gets n a / area points, rounded up or
+/// down by one random offset for all; within it they are independent.
+///
+/// Points lie in the order of their triangles and have the triangle's normal and label.
+/// The same for any number of threads.
+/// Throws argument_error unless exactly one of n, spacing, per_area is given and positive,
+/// undefined_error if the mesh has no area.
+mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options);
+
+namespace detail {
+
+inline std::size_t sample_count(const mesh_options& options, double area) {
+  if (options.n.has_value() + options.spacing.has_value() + options.per_area.has_value() != 1) {
+    throw argument_error("sample::mesh: exactly one of n, spacing and per_area expected");
+  }
+  const double n = options.n         ? static_cast<double>(*options.n)
+                   : options.spacing ? area / (*options.spacing * *options.spacing)
+                                     : area * *options.per_area;
+  const bool positive = !options.spacing || *options.spacing > 0;
+  if (!(n > 0) || !positive) {
+    throw argument_error("sample::mesh: n, spacing or per_area must be positive");
+  }
+  if (n > std::numeric_limits<std::uint32_t>::max()) {
+    throw argument_error(message("sample::mesh: at most 4 294 967 295 points expected, found ", n));
+  }
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(n)));
+}
+
+/// Index of the first sample of each triangle, and at the end their number.
+inline std::vector<std::size_t> sample_starts(const aib::mesh::mesh& surface,
+                                              double area,
+                                              std::size_t n,
+                                              double offset) {
+  std::vector<std::size_t> starts;
+  starts.reserve(surface.triangles.size() + 1);
+  double below = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const double place = below / area * static_cast<double>(n) + offset;
+    starts.push_back(std::min(n, static_cast<std::size_t>(place)));
+    below += aib::mesh::area(surface, t);
+  }
+  starts.push_back(n);
+  return starts;
+}
+
+/// Uniform in [0, 1) for a counter.
+inline double uniform(std::uint64_t seed, std::uint64_t counter) {
+  return static_cast<double>(random_bits(seed, counter) >> 11) * 0x1p-53;
+}
+
+/// A point of a triangle for two uniform numbers.
+/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
+inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner, double u, double v) {
+  const double root = std::sqrt(u);
+  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
+}
+
+inline Eigen::Vector3f unit_normal(const std::array<Eigen::Vector3d, 3>& corner) {
+  const Eigen::Vector3d ab = corner[1] - corner[0];
+  const Eigen::Vector3d ac = corner[2] - corner[0];
+  const Eigen::Vector3d normal = ab.cross(ac).normalized();
+  return normal.cast<float>();
+}
+
+/// An empty cloud that n points will lie in.
+inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
+  cloud::cloud points;
+  points.origin = surface.origin;
+  points.points.resize(n);
+  points.normals.resize(n);
+  if (!surface.labels.empty()) points.labels.resize(n);
+  return points;
+}
+
+}  // namespace detail
+
+inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options) {
+  const double area = aib::mesh::area(surface);
+  if (!(area > 0)) {
+    throw undefined_error(
+        message("sample::mesh: the mesh has no area (", surface.triangles.size(), " triangles)"));
+  }
+  const std::size_t n = detail::sample_count(options, area);
+  const double offset = detail::uniform(options.seed, 0);
+  const auto starts = detail::sample_starts(surface, area, n, offset);
+  cloud::cloud points = detail::room_for(surface, n);
+  for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
+    for (std::size_t t = c.begin; t < c.end; ++t) {
+      if (starts[t] == starts[t + 1]) continue;
+      const auto corner = aib::mesh::corners(surface, t);
+      const Eigen::Vector3f normal = detail::unit_normal(corner);
+      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+        const Eigen::Vector3d p = detail::point_in(corner, detail::uniform(options.seed, 2 * i + 1),
+                                                   detail::uniform(options.seed, 2 * i + 2));
+        points.points[i] = p.cast<float>();
+        points.normals[i] = normal;
+        if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+      }
+    }
+  });
+  const double density = static_cast<double>(n) / area;
+  return {std::move(points), area, density, sampling_floor(density)};
+}
+
+}  // namespace aib::sample
 
 // aib/io/axes.hpp
 
@@ -1463,6 +6063,87 @@ inline void turn_z_up(mesh::mesh& mesh, up_axis from) {
 
 }  // namespace aib::io
 
+// aib/io/bytes.hpp
+
+namespace aib::io {
+
+/// The number whose bytes lie at `from` in the given order.
+template <class T>
+[[nodiscard]] T load(const void* from, std::endian order = std::endian::little) {
+  static_assert(std::is_arithmetic_v<T>);
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(T));
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
+}
+
+/// Appends the bytes of a number in the given order.
+template <class T>
+void store(std::string& to, T value, std::endian order = std::endian::little) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  to.append(bytes.data(), bytes.size());
+}
+
+/// Reads numbers one after another from bytes in memory. Every read is checked against the end, and
+/// every error names the file, the byte and what was being read.
+class byte_reader {
+ public:
+  byte_reader(std::string_view bytes,
+              std::filesystem::path path,
+              std::endian order = std::endian::little)
+      : bytes_(bytes), path_(std::move(path)), order_(order) {}
+
+  [[nodiscard]] std::size_t position() const { return position_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size() - position_; }
+
+  template <class T>
+  T read(std::string_view what) {
+    return load<T>(take(sizeof(T), what).data(), order_);
+  }
+
+  /// The next `n` bytes, in place.
+  std::string_view take(std::size_t n, std::string_view what) {
+    if (n > left()) fail(message(what, ": ", n, " bytes expected, ", left(), " left in the file"));
+    return bytes_.substr(std::exchange(position_, position_ + n), n);
+  }
+
+  /// A count of records that take at least `record_bytes` each: refused where the file cannot hold
+  /// so many.
+  template <class T>
+  std::size_t read_count(std::size_t record_bytes, std::string_view what) {
+    const std::size_t at = position_;
+    const auto count = static_cast<std::uint64_t>(read<T>(what));
+    if (count > left() / record_bytes) {
+      position_ = at;
+      fail(message(what, ": ", count, " records of at least ", record_bytes,
+                   " bytes do not fit in the ", bytes_.size() - at - sizeof(T), " bytes left"));
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  /// Text up to a NUL, which is skipped.
+  std::string_view read_name(std::string_view what) {
+    const std::size_t end = bytes_.find('\0', position_);
+    if (end == std::string_view::npos) fail(message(what, ": no end of the name in the file"));
+    const std::string_view name = bytes_.substr(position_, end - position_);
+    position_ = end + 1;
+    return name;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, at_byte{position_}, what);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::filesystem::path path_;
+  std::endian order_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace aib::io
+
 // aib/io/file.hpp
 
 namespace aib::io {
@@ -1475,6 +6156,7 @@ class input_file {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] int descriptor() const { return ::fileno(file_.get()); }
 
   /// Reads exactly `n` bytes at `offset`. Throws format_error where the file ends before.
   void read_at(std::uint64_t offset, void* to, std::size_t n) const;
@@ -1537,7 +6219,7 @@ inline input_file::input_file(std::filesystem::path path) : path_(std::move(path
 inline void input_file::read_at(std::uint64_t offset, void* to, std::size_t n) const {
   auto* bytes = static_cast<char*>(to);
   while (n > 0) {
-    const ssize_t got = ::pread(::fileno(file_.get()), bytes, n, static_cast<off_t>(offset));
+    const ssize_t got = ::pread(descriptor(), bytes, n, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw io_error(path_, message("cannot read: ", std::strerror(errno)));
     if (got == 0)
@@ -1623,6 +6305,20 @@ class byte_stream {
     return bytes;
   }
 
+  template <class T>
+  T read_number(std::string_view what, std::endian order = std::endian::little) {
+    return load<T>(take(sizeof(T), what), order);
+  }
+
+  /// Text up to a NUL, which is skipped; at most 255 characters.
+  std::string take_name(std::string_view what) {
+    std::string name;
+    for (char c; (c = *take(1, what)) != '\0'; name += c) {
+      if (name.size() == 255) fail(message(what, ": no end within 255 characters"));
+    }
+    return name;
+  }
+
   /// Copies the next `n` bytes to `to`; large pieces go there without a detour.
   void read(void* to, std::size_t n, std::string_view what) {
     const std::size_t ready = std::min(n, filled_ - at_);
@@ -1668,7 +6364,7 @@ class byte_stream {
     const auto wanted = static_cast<std::size_t>(
         std::min<std::uint64_t>(left(), std::max<std::size_t>(n, block_size)));
     const std::size_t kept = filled_ - at_;
-    std::memmove(block_.data(), block_.data() + at_, kept);
+    if (kept > 0) std::memmove(block_.data(), block_.data() + at_, kept);
     move_to(offset());
     if (block_.size() < wanted) block_.resize(wanted);
     file_->read_at(block_offset_ + kept, block_.data() + kept, wanted - kept);
@@ -1680,87 +6376,6 @@ class byte_stream {
   std::uint64_t block_offset_;  ///< place of the block in the file
   std::size_t at_ = 0;          ///< next byte in the block
   std::size_t filled_ = 0;      ///< bytes of the block that were read
-};
-
-}  // namespace aib::io
-
-// aib/io/bytes.hpp
-
-namespace aib::io {
-
-/// The number whose bytes lie at `from` in the given order.
-template <class T>
-[[nodiscard]] T load(const void* from, std::endian order = std::endian::little) {
-  static_assert(std::is_arithmetic_v<T>);
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), from, sizeof(T));
-  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
-  return std::bit_cast<T>(bytes);
-}
-
-/// Appends the bytes of a number in the given order.
-template <class T>
-void store(std::string& to, T value, std::endian order = std::endian::little) {
-  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
-  to.append(bytes.data(), bytes.size());
-}
-
-/// Reads numbers one after another from bytes in memory. Every read is checked against the end, and
-/// every error names the file, the byte and what was being read.
-class byte_reader {
- public:
-  byte_reader(std::string_view bytes,
-              std::filesystem::path path,
-              std::endian order = std::endian::little)
-      : bytes_(bytes), path_(std::move(path)), order_(order) {}
-
-  [[nodiscard]] std::size_t position() const { return position_; }
-  [[nodiscard]] std::size_t left() const { return bytes_.size() - position_; }
-
-  template <class T>
-  T read(std::string_view what) {
-    return load<T>(take(sizeof(T), what).data(), order_);
-  }
-
-  /// The next `n` bytes, in place.
-  std::string_view take(std::size_t n, std::string_view what) {
-    if (n > left()) fail(message(what, ": ", n, " bytes expected, ", left(), " left in the file"));
-    return bytes_.substr(std::exchange(position_, position_ + n), n);
-  }
-
-  /// A count of records that take at least `record_bytes` each: refused where the file cannot hold
-  /// so many.
-  template <class T>
-  std::size_t read_count(std::size_t record_bytes, std::string_view what) {
-    const std::size_t at = position_;
-    const auto count = static_cast<std::uint64_t>(read<T>(what));
-    if (count > left() / record_bytes) {
-      position_ = at;
-      fail(message(what, ": ", count, " records of at least ", record_bytes,
-                   " bytes do not fit in the ", bytes_.size() - at - sizeof(T), " bytes left"));
-    }
-    return static_cast<std::size_t>(count);
-  }
-
-  /// Text up to a NUL, which is skipped.
-  std::string_view read_name(std::string_view what) {
-    const std::size_t end = bytes_.find('\0', position_);
-    if (end == std::string_view::npos) fail(message(what, ": no end of the name in the file"));
-    const std::string_view name = bytes_.substr(position_, end - position_);
-    position_ = end + 1;
-    return name;
-  }
-
-  [[noreturn]] void fail(std::string_view what) const {
-    throw format_error(path_, at_byte{position_}, what);
-  }
-
- private:
-  std::string_view bytes_;
-  std::filesystem::path path_;
-  std::endian order_;
-  std::size_t position_ = 0;
 };
 
 }  // namespace aib::io
@@ -3075,6 +7690,2631 @@ inline void write_cloud(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/io/pose_frame.hpp
+
+namespace aib::io {
+
+/// Which way a written pose maps points.
+enum class pose_convention { world_from_camera, camera_from_world };
+
+/// Axes of a camera. opencv: x right, y down, z forward. opengl: x right, y up, z backward.
+enum class camera_axes { opencv, opengl };
+
+/// How a file writes its poses; the defaults are the house's own frame.
+struct pose_frame {
+  pose_convention convention = pose_convention::world_from_camera;
+  camera_axes axes = camera_axes::opencv;
+};
+
+/// [A | t], the upper rows of a 4 x 4 pose matrix.
+using pose_matrix = Eigen::Matrix<double, 3, 4>;
+
+/// A written rotation further than this from a rotation (Frobenius norm) is refused.
+inline constexpr double max_rotation_residual = 1e-2;
+
+/// A pose that says "not registered".
+[[nodiscard]] math::rigid3 unregistered_pose();
+
+/// The pose that a matrix written in `frame` stands for, in the house's frame.
+///
+/// The camera centre is taken from the matrix as written (t, or -A^T t), then A is replaced by the
+/// nearest rotation. A matrix that is not finite gives an unregistered pose.
+/// Throws argument_error where A is mirrored or further than `max_rotation_residual` from a
+/// rotation.
+[[nodiscard]] math::rigid3 pose_from_matrix(const pose_matrix& matrix,
+                                            const pose_frame& frame = {});
+
+/// The same for a quaternion of any length and a translation.
+/// Throws argument_error where the quaternion is zero.
+[[nodiscard]] math::rigid3 pose_from_quaternion(const math::quaternion& rotation,
+                                                const Eigen::Vector3d& translation,
+                                                const pose_frame& frame = {});
+
+/// The pose as it is written in `frame`.
+[[nodiscard]] math::rigid3 pose_in_frame(const math::rigid3& world_from_camera,
+                                         const pose_frame& frame);
+
+namespace detail {
+
+/// Turns y and z of the camera about: OpenGL's axes become OpenCV's and the reverse.
+inline void flip_axes(math::rigid3& world_from_camera) {
+  world_from_camera.rotation.rightCols<2>() *= -1;
+}
+
+}  // namespace detail
+
+inline math::rigid3 unregistered_pose() {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return {Eigen::Matrix3d::Constant(nan), Eigen::Vector3d::Constant(nan)};
+}
+
+inline math::rigid3 pose_from_matrix(const pose_matrix& matrix, const pose_frame& frame) {
+  if (!matrix.allFinite()) return unregistered_pose();
+  const Eigen::Matrix3d written = matrix.leftCols<3>();
+  const auto nearest = math::nearest_rotation(written);
+  if (!nearest) {
+    throw argument_error(
+        message("the rotation part has determinant ", written.determinant(), ", 1 expected"));
+  }
+  if (nearest->residual > max_rotation_residual) {
+    throw argument_error(message("the rotation part lies ", nearest->residual,
+                                 " from a rotation, at most ", max_rotation_residual, " expected"));
+  }
+  math::rigid3 pose{nearest->rotation, matrix.col(3)};
+  if (frame.convention == pose_convention::camera_from_world) {
+    pose.rotation.transposeInPlace();
+    pose.translation = -(written.transpose() * matrix.col(3));
+  }
+  if (frame.axes == camera_axes::opengl) detail::flip_axes(pose);
+  return pose;
+}
+
+inline math::rigid3 pose_from_quaternion(const math::quaternion& q,
+                                         const Eigen::Vector3d& translation,
+                                         const pose_frame& frame) {
+  const Eigen::Vector4d parts(q.w, q.x, q.y, q.z);
+  if (!parts.allFinite() || !translation.allFinite()) return unregistered_pose();
+  if (!(parts.squaredNorm() > 0)) throw argument_error("the quaternion is zero");
+  math::rigid3 pose{math::rotation_from(q), translation};
+  if (frame.convention == pose_convention::camera_from_world) pose = pose.inverse();
+  if (frame.axes == camera_axes::opengl) detail::flip_axes(pose);
+  return pose;
+}
+
+inline math::rigid3 pose_in_frame(const math::rigid3& world_from_camera, const pose_frame& frame) {
+  math::rigid3 pose = world_from_camera;
+  if (frame.axes == camera_axes::opengl) detail::flip_axes(pose);
+  return frame.convention == pose_convention::camera_from_world ? pose.inverse() : pose;
+}
+
+}  // namespace aib::io
+
+// aib/io/colmap_records.hpp
+
+/// What the files of a COLMAP model hold, record by record, as the text and the binary reader find
+/// it. `io::read_colmap` makes a model of it.
+namespace aib::io::colmap {
+
+/// Kind and number of a sensor: kind 0 is a camera, 1 an IMU.
+using sensor = std::pair<std::int32_t, std::uint32_t>;
+
+inline constexpr std::int32_t camera_sensor = 0;
+inline constexpr std::int32_t imu_sensor = 1;
+
+struct image {
+  std::uint32_t id = 0;
+  std::uint32_t camera_id = 0;
+  math::rigid3 camera_from_world = {};
+  std::string name = {};
+};
+
+/// Sensors that move together. The reference sensor is the rig's own frame.
+struct rig {
+  std::optional<sensor> reference = {};
+  std::map<sensor, math::rigid3> sensor_from_rig = {};  ///< those whose pose is known
+};
+
+struct frame {
+  std::uint32_t rig_id = 0;
+  math::rigid3 rig_from_world = {};
+  std::vector<std::pair<sensor, std::uint64_t>> data = {};  ///< sensor and image
+};
+
+struct points {
+  std::vector<Eigen::Vector3d> positions = {};
+  std::vector<cloud::color> colors = {};
+  std::vector<double> errors_px = {};
+  std::vector<std::uint64_t> track_lengths = {};
+};
+
+/// The pose of a record: camera_from_world, rig_from_world or sensor_from_rig as it stands in the
+/// file. Throws argument_error where a number is not finite or the quaternion is zero.
+[[nodiscard]] inline math::rigid3 written_pose(const math::quaternion& q,
+                                               const Eigen::Vector3d& translation) {
+  math::rigid3 pose = pose_from_quaternion(q, translation);
+  if (!pose.is_finite()) throw argument_error("the pose is not finite");
+  return pose;
+}
+
+/// Adds a camera. Throws argument_error where the id is taken or the parameters are not finite.
+inline void add_camera(std::map<std::uint32_t, math::camera>& cameras,
+                       std::uint32_t id,
+                       math::camera camera) {
+  for (const double parameter : camera.parameters) {
+    if (!std::isfinite(parameter))
+      throw argument_error(message("camera ", id, " has a parameter that is not finite"));
+  }
+  if (!cameras.emplace(id, std::move(camera)).second)
+    throw argument_error(message("camera ", id, " comes twice"));
+}
+
+/// Adds a rig. Throws argument_error where the id is taken.
+inline void add_rig(std::map<std::uint32_t, rig>& rigs, std::uint32_t id, rig r) {
+  if (!rigs.emplace(id, std::move(r)).second)
+    throw argument_error(message("rig ", id, " comes twice"));
+}
+
+}  // namespace aib::io::colmap
+
+// aib/io/mapped_file.hpp
+
+namespace aib::io {
+
+/// A file as bytes in memory, of which only what is looked at is read from the disk. Meant for
+/// large files whose greater part is skipped. Throws io_error as input_file does.
+///
+/// The file must not be shortened by another program meanwhile: reading beyond its new end ends the
+/// process.
+class mapped_file {
+ public:
+  explicit mapped_file(const std::filesystem::path& path) : file_(path) {
+    size_ = static_cast<std::size_t>(file_.size());
+    if (size_ == 0) return;
+    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file_.descriptor(), 0);
+    if (data_ == MAP_FAILED) throw io_error(path, message("cannot map: ", std::strerror(errno)));
+    ::posix_madvise(data_, size_, POSIX_MADV_SEQUENTIAL);
+  }
+  mapped_file(const mapped_file&) = delete;
+  mapped_file& operator=(const mapped_file&) = delete;
+  ~mapped_file() {
+    if (size_ > 0) ::munmap(data_, size_);
+  }
+
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+  [[nodiscard]] std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+ private:
+  input_file file_;
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace aib::io
+
+// aib/io/colmap_binary.hpp
+
+/// COLMAP's binary files, little endian, of every version to 4.2.
+/// Source: COLMAP, scene/reconstruction_io_binary.cc.
+namespace aib::io::colmap::binary {
+
+[[nodiscard]] std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem::path& path);
+/// Observations in the images are skipped unread.
+[[nodiscard]] std::vector<image> read_images(const std::filesystem::path& path);
+[[nodiscard]] std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path);
+[[nodiscard]] std::vector<frame> read_frames(const std::filesystem::path& path);
+/// Tracks are counted, not kept.
+[[nodiscard]] points read_points(const std::filesystem::path& path);
+[[nodiscard]] std::size_t count_points(const std::filesystem::path& path);
+
+namespace detail {
+
+/// Reads a file of `count, record, record, ...`; refuses bytes after the last record.
+template <class Record>
+void read_records(const std::filesystem::path& path,
+                  std::size_t record_bytes,
+                  std::string_view what,
+                  Record&& record) {
+  const mapped_file file(path);
+  byte_reader in(file.bytes(), path);
+  const auto count = in.read_count<std::uint64_t>(record_bytes, message("colmap: ", what));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t begin = in.position();
+    try {
+      record(in);
+    } catch (const argument_error& e) {
+      throw format_error(path, at_byte{begin}, message("colmap: ", what, ": ", e.what()));
+    }
+  }
+  if (in.left() > 0)
+    in.fail(message("colmap: ", in.left(), " bytes after the last of ", count, " ", what));
+}
+
+inline Eigen::Vector3d read_vector(byte_reader& in, std::string_view what) {
+  const auto x = in.read<double>(what);
+  const auto y = in.read<double>(what);
+  const auto z = in.read<double>(what);
+  return {x, y, z};
+}
+
+inline math::rigid3 read_pose(byte_reader& in) {
+  math::quaternion q;
+  q.w = in.read<double>("colmap: quaternion");
+  q.x = in.read<double>("colmap: quaternion");
+  q.y = in.read<double>("colmap: quaternion");
+  q.z = in.read<double>("colmap: quaternion");
+  return written_pose(q, read_vector(in, "colmap: translation"));
+}
+
+inline sensor read_sensor(byte_reader& in) {
+  const auto kind = in.read<std::int32_t>("colmap: kind of sensor");
+  return {kind, in.read<std::uint32_t>("colmap: sensor id")};
+}
+
+}  // namespace detail
+
+inline std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem::path& path) {
+  std::map<std::uint32_t, math::camera> cameras;
+  detail::read_records(path, 40, "cameras", [&](byte_reader& in) {
+    const auto id = in.read<std::uint32_t>("colmap: camera id");
+    const auto model_id = in.read<std::int32_t>("colmap: camera model");
+    const auto model = math::find_camera_model(model_id);
+    if (!model)
+      throw argument_error(message("camera ", id, " has model ", model_id, ", 0 to 17 expected"));
+    math::camera camera{*model, 0, 0, {}};
+    camera.width = in.read<std::uint64_t>("colmap: camera width");
+    camera.height = in.read<std::uint64_t>("colmap: camera height");
+    for (std::size_t i = 0; i < math::info(*model).n_parameters; ++i)
+      camera.parameters.push_back(in.read<double>("colmap: camera parameters"));
+    add_camera(cameras, id, std::move(camera));
+  });
+  return cameras;
+}
+
+inline std::vector<image> read_images(const std::filesystem::path& path) {
+  constexpr std::size_t observation_bytes = 24;
+  std::vector<image> images;
+  detail::read_records(path, 73, "images", [&](byte_reader& in) {
+    image i;
+    i.id = in.read<std::uint32_t>("colmap: image id");
+    i.camera_from_world = detail::read_pose(in);
+    i.camera_id = in.read<std::uint32_t>("colmap: camera id");
+    i.name = in.read_name("colmap: image name");
+    const auto n = in.read_count<std::uint64_t>(observation_bytes, "colmap: observations");
+    in.take(n * observation_bytes, "colmap: observations");
+    images.push_back(std::move(i));
+  });
+  return images;
+}
+
+inline std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path) {
+  std::map<std::uint32_t, rig> rigs;
+  detail::read_records(path, 8, "rigs", [&](byte_reader& in) {
+    rig r;
+    const auto id = in.read<std::uint32_t>("colmap: rig id");
+    const auto n_sensors = in.read_count<std::uint32_t>(8, "colmap: sensors of a rig");
+    if (n_sensors > 0) r.reference = detail::read_sensor(in);
+    for (std::size_t i = 1; i < n_sensors; ++i) {
+      const sensor s = detail::read_sensor(in);
+      if (in.read<std::uint8_t>("colmap: whether a sensor has a pose") != 0)
+        r.sensor_from_rig[s] = detail::read_pose(in);
+    }
+    add_rig(rigs, id, std::move(r));
+  });
+  return rigs;
+}
+
+inline std::vector<frame> read_frames(const std::filesystem::path& path) {
+  std::vector<frame> frames;
+  detail::read_records(path, 68, "frames", [&](byte_reader& in) {
+    frame f;
+    in.read<std::uint32_t>("colmap: frame id");
+    f.rig_id = in.read<std::uint32_t>("colmap: rig id");
+    f.rig_from_world = detail::read_pose(in);
+    const auto n = in.read_count<std::uint32_t>(16, "colmap: images of a frame");
+    for (std::size_t i = 0; i < n; ++i) {
+      const sensor s = detail::read_sensor(in);
+      f.data.emplace_back(s, in.read<std::uint64_t>("colmap: image id"));
+    }
+    frames.push_back(std::move(f));
+  });
+  return frames;
+}
+
+inline points read_points(const std::filesystem::path& path) {
+  constexpr std::size_t track_bytes = 8;
+  points p;
+  detail::read_records(path, 51, "points", [&](byte_reader& in) {
+    in.read<std::uint64_t>("colmap: point id");
+    p.positions.push_back(detail::read_vector(in, "colmap: point"));
+    cloud::color color;
+    for (std::uint8_t& channel : color) channel = in.read<std::uint8_t>("colmap: color");
+    p.colors.push_back(color);
+    p.errors_px.push_back(in.read<double>("colmap: point error"));
+    const auto n = in.read_count<std::uint64_t>(track_bytes, "colmap: track");
+    in.take(n * track_bytes, "colmap: track");
+    p.track_lengths.push_back(n);
+  });
+  return p;
+}
+
+inline std::size_t count_points(const std::filesystem::path& path) {
+  const mapped_file file(path);
+  return byte_reader(file.bytes(), path).read_count<std::uint64_t>(51, "colmap: points");
+}
+
+}  // namespace aib::io::colmap::binary
+
+// aib/io/colmap_text.hpp
+
+/// COLMAP's text files of every version to 4.2.
+/// Source: COLMAP, scene/reconstruction_io_text.cc.
+namespace aib::io::colmap::text {
+
+[[nodiscard]] std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem::path& path);
+/// An image takes two lines, of which the second (its observations, skipped) may be empty. A name
+/// may hold blanks.
+[[nodiscard]] std::vector<image> read_images(const std::filesystem::path& path);
+[[nodiscard]] std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path);
+[[nodiscard]] std::vector<frame> read_frames(const std::filesystem::path& path);
+/// Tracks are counted, not kept.
+[[nodiscard]] points read_points(const std::filesystem::path& path);
+[[nodiscard]] std::size_t count_points(const std::filesystem::path& path);
+
+namespace detail {
+
+/// Takes the fields of a line one after another. Throws argument_error where one is missing or is
+/// not what is expected.
+class field_reader {
+ public:
+  explicit field_reader(std::string_view line) : rest_(trim(line)) {}
+
+  [[nodiscard]] bool done() const { return rest_.empty(); }
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+
+  std::string_view next(std::string_view what) {
+    if (rest_.empty()) throw argument_error(message(what, " expected, found the end of the line"));
+    const std::size_t end = std::min(rest_.find_first_of(" \t"), rest_.size());
+    const std::string_view field = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
+    return field;
+  }
+
+  template <class Number>
+  Number number(std::string_view what) {
+    const std::string_view field = next(what);
+    if (const auto value = parse<Number>(field)) return *value;
+    throw argument_error(message(what, " expected, found '", field, "'"));
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+/// Calls `record(fields, lines)` for each line that is neither blank nor a comment and puts the
+/// line before what is refused.
+template <class Record>
+void read_records(const std::filesystem::path& path, Record&& record) {
+  const mapped_file file(path);
+  line_reader lines(file.bytes(), path);
+  while (lines.next_content()) {
+    field_reader fields(lines.line());
+    try {
+      record(fields, lines);
+    } catch (const argument_error& e) {
+      lines.fail(message("colmap: ", e.what()));
+    }
+  }
+}
+
+inline Eigen::Vector3d read_vector(field_reader& in, std::string_view what) {
+  const auto x = in.number<double>(what);
+  const auto y = in.number<double>(what);
+  const auto z = in.number<double>(what);
+  return {x, y, z};
+}
+
+inline math::rigid3 read_pose(field_reader& in) {
+  math::quaternion q;
+  q.w = in.number<double>("quaternion");
+  q.x = in.number<double>("quaternion");
+  q.y = in.number<double>("quaternion");
+  q.z = in.number<double>("quaternion");
+  return written_pose(q, read_vector(in, "translation"));
+}
+
+inline sensor read_sensor(field_reader& in) {
+  const std::string_view kind = in.next("kind of sensor");
+  const auto id = in.number<std::uint32_t>("sensor id");
+  if (kind == "CAMERA") return {camera_sensor, id};
+  if (kind == "IMU") return {imu_sensor, id};
+  throw argument_error(message("kind of sensor CAMERA or IMU expected, found '", kind, "'"));
+}
+
+/// Whether a line can be the observations of an image: X, Y, POINT3D_ID and so on. Long lines are
+/// believed: only a short one can be the next image, its blank line lost.
+inline bool is_observations(std::string_view line) {
+  constexpr std::size_t longest_image_line = 4096;
+  if (line.size() > longest_image_line) return true;
+  std::size_t n = 0;
+  for (field_reader fields(line); !fields.done(); ++n) {
+    if (!parse<double>(fields.next("observation"))) return false;
+  }
+  return n % 3 == 0;
+}
+
+inline void expect_end(const field_reader& fields) {
+  if (!fields.done())
+    throw argument_error(message("the end of the line expected, found '", fields.rest(), "'"));
+}
+
+}  // namespace detail
+
+inline std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem::path& path) {
+  std::map<std::uint32_t, math::camera> cameras;
+  detail::read_records(path, [&](detail::field_reader& in, line_reader&) {
+    const auto id = in.number<std::uint32_t>("camera id");
+    const std::string_view name = in.next("camera model");
+    const auto model = math::find_camera_model(name);
+    if (!model) throw argument_error(message("camera model '", name, "' is not known"));
+    math::camera camera{*model, 0, 0, {}};
+    camera.width = in.number<std::uint64_t>("camera width");
+    camera.height = in.number<std::uint64_t>("camera height");
+    while (!in.done()) camera.parameters.push_back(in.number<double>("camera parameter"));
+    if (camera.parameters.size() != math::info(*model).n_parameters) {
+      throw argument_error(message(math::info(*model).n_parameters, " parameters of ", name,
+                                   " expected, found ", camera.parameters.size()));
+    }
+    add_camera(cameras, id, std::move(camera));
+  });
+  return cameras;
+}
+
+inline std::vector<image> read_images(const std::filesystem::path& path) {
+  std::vector<image> images;
+  detail::read_records(path, [&](detail::field_reader& in, line_reader& lines) {
+    image i;
+    i.id = in.number<std::uint32_t>("image id");
+    i.camera_from_world = detail::read_pose(in);
+    i.camera_id = in.number<std::uint32_t>("camera id");
+    i.name = in.rest();
+    if (i.name.empty()) throw argument_error("image name expected, found the end of the line");
+    images.push_back(std::move(i));
+    if (lines.next() && !detail::is_observations(lines.line())) {
+      throw argument_error(
+          "observations (x, y, point id) or an empty line expected after an image's line");
+    }
+  });
+  return images;
+}
+
+inline std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path) {
+  std::map<std::uint32_t, rig> rigs;
+  detail::read_records(path, [&](detail::field_reader& in, line_reader&) {
+    rig r;
+    const auto id = in.number<std::uint32_t>("rig id");
+    const auto n_sensors = in.number<std::uint32_t>("number of sensors");
+    if (n_sensors > 0) r.reference = detail::read_sensor(in);
+    for (std::uint32_t i = 1; i < n_sensors; ++i) {
+      const sensor s = detail::read_sensor(in);
+      if (in.number<int>("whether the sensor has a pose") != 0)
+        r.sensor_from_rig[s] = detail::read_pose(in);
+    }
+    detail::expect_end(in);
+    add_rig(rigs, id, std::move(r));
+  });
+  return rigs;
+}
+
+inline std::vector<frame> read_frames(const std::filesystem::path& path) {
+  std::vector<frame> frames;
+  detail::read_records(path, [&](detail::field_reader& in, line_reader&) {
+    frame f;
+    static_cast<void>(in.number<std::uint32_t>("frame id"));
+    f.rig_id = in.number<std::uint32_t>("rig id");
+    f.rig_from_world = detail::read_pose(in);
+    const auto n = in.number<std::uint32_t>("number of images");
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const sensor s = detail::read_sensor(in);
+      f.data.emplace_back(s, in.number<std::uint64_t>("image id"));
+    }
+    detail::expect_end(in);
+    frames.push_back(std::move(f));
+  });
+  return frames;
+}
+
+inline points read_points(const std::filesystem::path& path) {
+  points p;
+  detail::read_records(path, [&](detail::field_reader& in, line_reader&) {
+    static_cast<void>(in.number<std::uint64_t>("point id"));
+    p.positions.push_back(detail::read_vector(in, "point"));
+    cloud::color color;
+    for (std::uint8_t& channel : color) channel = in.number<std::uint8_t>("color");
+    p.colors.push_back(color);
+    p.errors_px.push_back(in.number<double>("point error"));
+    std::uint64_t fields = 0;
+    for (; !in.done(); ++fields) in.next("track");
+    if (fields % 2 != 0)
+      throw argument_error(message("track: pairs of numbers expected, found ", fields));
+    p.track_lengths.push_back(fields / 2);
+  });
+  return p;
+}
+
+inline std::size_t count_points(const std::filesystem::path& path) {
+  std::size_t n = 0;
+  detail::read_records(path, [&](detail::field_reader&, line_reader&) { ++n; });
+  return n;
+}
+
+}  // namespace aib::io::colmap::text
+
+// aib/io/trajectory_check.hpp
+
+namespace aib::io {
+
+/// The last step of every reader of poses: refuses a file without a pose and adds a warning for
+/// each thing to doubt: poses that are not finite, repeated names, stamps that repeat or go back.
+[[nodiscard]] inline pose::trajectory checked_trajectory(pose::trajectory t,
+                                                         const std::filesystem::path& path,
+                                                         std::string_view format) {
+  if (t.empty()) throw format_error(path, message(format, ": no pose in the file"));
+  const auto warn = [&](std::size_t n, std::string_view what) {
+    if (n > 0) t.warnings.push_back(message(n, " of ", t.size(), " poses ", what));
+  };
+  const auto repeats = [](auto values) {
+    std::sort(values.begin(), values.end());
+    return static_cast<std::size_t>(values.end() - std::unique(values.begin(), values.end()));
+  };
+  std::size_t unregistered = 0;
+  for (const math::rigid3& pose : t.world_from_camera) unregistered += pose.is_finite() ? 0 : 1;
+  warn(unregistered, "are not finite: not registered");
+  warn(repeats(t.names), "repeat a name");
+  warn(repeats(t.stamps_s), "repeat a stamp");
+  std::size_t backward = 0;
+  for (std::size_t i = 1; i < t.stamps_s.size(); ++i)
+    backward += t.stamps_s[i] < t.stamps_s[i - 1] ? 1 : 0;
+  warn(backward, "have an earlier stamp than the pose before");
+  return t;
+}
+
+}  // namespace aib::io
+
+// aib/io/colmap.hpp
+
+namespace aib::io {
+
+/// A sparse model of COLMAP or GLOMAP.
+struct colmap_model {
+  std::filesystem::path path = {};             ///< folder that it was read from
+  pose::trajectory trajectory = {};            ///< the registered images, sorted by name
+  std::vector<std::uint32_t> image_ids = {};   ///< one a pose
+  std::vector<std::uint32_t> camera_ids = {};  ///< one a pose, keys of `cameras`
+  std::map<std::uint32_t, math::camera> cameras = {};
+  cloud::cloud points = {};                       ///< with colors
+  std::vector<double> point_errors_px = {};       ///< one a point, < 0: not known
+  std::vector<std::uint64_t> track_lengths = {};  ///< one a point
+  std::size_t n_points = 0;                       ///< in the file, also where none were read
+
+  /// The camera of pose `i`.
+  [[nodiscard]] const math::camera& camera(std::size_t i) const {
+    return cameras.at(camera_ids.at(i));
+  }
+};
+
+/// What of a model is read.
+enum class colmap_content {
+  everything,
+  cameras_and_images,  ///< points are counted only
+};
+
+/// The folders of the models at `path`: the folder itself, else its numbered sub-folders in the
+/// order of their numbers, else those of its folder `sparse`. Empty where there is none.
+[[nodiscard]] std::vector<std::filesystem::path> find_colmap_models(
+    const std::filesystem::path& path);
+
+/// Reads the models at `path`, see find_colmap_models: cameras, images and points3D, binary where a
+/// folder has both kinds (as COLMAP does), of every version to 4.2. Where rigs and frames are
+/// there, their poses win over those in images, as in COLMAP. Quaternions are normalised. Without
+/// points3D the points are empty, and a warning says so.
+///
+/// Throws io_error where there is no model, format_error where a file is cut off, has bytes after
+/// its last record, an unknown camera model, an image without its camera or a pose that is not
+/// finite.
+[[nodiscard]] std::vector<colmap_model> read_colmap_models(
+    const std::filesystem::path& path, colmap_content content = colmap_content::everything);
+
+/// The largest of the models at `path`: most images, then most points, then the lowest number. A
+/// warning of its trajectory names the others.
+[[nodiscard]] colmap_model read_colmap(const std::filesystem::path& path,
+                                       colmap_content content = colmap_content::everything);
+
+/// Image name -> camera.
+[[nodiscard]] std::map<std::string, math::camera> cameras_by_name(const colmap_model& model);
+
+namespace colmap::detail {
+
+namespace fs = std::filesystem;
+
+enum class encoding { binary, text };
+
+inline bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+inline std::optional<encoding> find_encoding(const fs::path& folder) {
+  if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin")) return encoding::binary;
+  if (is_there(folder / "cameras.txt") && is_there(folder / "images.txt")) return encoding::text;
+  return std::nullopt;
+}
+
+/// Sub-folders with a number for a name that are models, in the order of the numbers.
+inline std::vector<fs::path> numbered_models(const fs::path& folder) {
+  std::vector<std::pair<std::uint64_t, fs::path>> found;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const auto number = parse<std::uint64_t>(entry.path().filename().string());
+    if (number && find_encoding(entry.path())) found.emplace_back(*number, entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> folders;
+  for (auto& [number, path] : found) folders.push_back(std::move(path));
+  return folders;
+}
+
+/// The three or five files of a model, whichever way they are written.
+class model_files {
+ public:
+  model_files(fs::path folder, encoding kind) : folder_(std::move(folder)), kind_(kind) {}
+
+  [[nodiscard]] fs::path file(const char* stem) const {
+    return folder_ / (std::string(stem) + (kind_ == encoding::binary ? ".bin" : ".txt"));
+  }
+  [[nodiscard]] auto cameras() const {
+    return read("cameras", binary::read_cameras, text::read_cameras);
+  }
+  [[nodiscard]] auto images() const {
+    return read("images", binary::read_images, text::read_images);
+  }
+  [[nodiscard]] auto rigs() const { return read("rigs", binary::read_rigs, text::read_rigs); }
+  [[nodiscard]] auto frames() const {
+    return read("frames", binary::read_frames, text::read_frames);
+  }
+  [[nodiscard]] auto points() const {
+    return read("points3D", binary::read_points, text::read_points);
+  }
+  [[nodiscard]] auto point_count() const {
+    return read("points3D", binary::count_points, text::count_points);
+  }
+
+ private:
+  template <class Records>
+  Records read(const char* stem,
+               Records (*read_binary)(const fs::path&),
+               Records (*read_text)(const fs::path&)) const {
+    return kind_ == encoding::binary ? read_binary(file(stem)) : read_text(file(stem));
+  }
+
+  fs::path folder_;
+  encoding kind_;
+};
+
+/// camera_from_world of each image that the rigs and frames pose.
+inline std::map<std::uint64_t, math::rigid3> poses_of_frames(
+    const std::map<std::uint32_t, rig>& rigs, const std::vector<frame>& frames) {
+  std::map<std::uint64_t, math::rigid3> poses;
+  for (const frame& f : frames) {
+    const auto r = rigs.find(f.rig_id);
+    if (r == rigs.end()) continue;
+    for (const auto& [s, image_id] : f.data) {
+      if (s.first != camera_sensor) continue;
+      if (r->second.reference == s) {
+        poses[image_id] = f.rig_from_world;
+      } else if (const auto known = r->second.sensor_from_rig.find(s);
+                 known != r->second.sensor_from_rig.end()) {
+        poses[image_id] = known->second * f.rig_from_world;
+      }
+    }
+  }
+  return poses;
+}
+
+inline bool differ(const math::rigid3& a, const math::rigid3& b) {
+  constexpr double rounding = 1e-6;
+  return (a.rotation - b.rotation).norm() > rounding ||
+         (a.translation - b.translation).norm() > rounding * (1 + b.translation.norm());
+}
+
+/// Lets the rigs' poses win. Returns how many images they moved.
+inline std::size_t apply_frames(std::vector<image>& images, const model_files& files) {
+  if (!is_there(files.file("rigs")) || !is_there(files.file("frames"))) return 0;
+  const auto poses = poses_of_frames(files.rigs(), files.frames());
+  std::size_t moved = 0;
+  for (image& i : images) {
+    const auto pose = poses.find(i.id);
+    if (pose == poses.end()) continue;
+    moved += differ(pose->second, i.camera_from_world) ? 1 : 0;
+    i.camera_from_world = pose->second;
+  }
+  return moved;
+}
+
+inline void check_images(const std::vector<image>& images,
+                         const std::map<std::uint32_t, math::camera>& cameras,
+                         const fs::path& path) {
+  std::vector<std::uint32_t> ids;
+  for (const image& i : images) {
+    ids.push_back(i.id);
+    if (!cameras.contains(i.camera_id)) {
+      throw format_error(path, message("colmap: image '", i.name, "' has camera ", i.camera_id,
+                                       ", which is not among the ", cameras.size(), " cameras"));
+    }
+  }
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice != ids.end())
+    throw format_error(path, message("colmap: image ", *twice, " comes twice"));
+}
+
+inline void read_points(colmap_model& model, const model_files& files, colmap_content content) {
+  if (!is_there(files.file("points3D"))) {
+    model.points.warnings.push_back("the model has no points3D file: no points");
+    return;
+  }
+  if (content == colmap_content::cameras_and_images) {
+    model.n_points = files.point_count();
+    return;
+  }
+  points p = files.points();
+  model.n_points = p.positions.size();
+  float_positions floats = to_floats(p.positions);
+  model.points.origin = floats.origin;
+  model.points.points = std::move(floats.points);
+  model.points.colors = std::move(p.colors);
+  if (auto warning = non_finite_warning(model.points.points, "points"))
+    model.points.warnings.push_back(std::move(*warning));
+  model.point_errors_px = std::move(p.errors_px);
+  model.track_lengths = std::move(p.track_lengths);
+}
+
+inline colmap_model read_model(const fs::path& folder, encoding kind, colmap_content content) {
+  const model_files files(folder, kind);
+  colmap_model model;
+  model.path = folder;
+  model.cameras = files.cameras();
+  std::vector<image> images = files.images();
+  check_images(images, model.cameras, files.file("images"));
+  const std::size_t moved = apply_frames(images, files);
+  std::sort(images.begin(), images.end(), [](const image& a, const image& b) {
+    return std::tie(a.name, a.id) < std::tie(b.name, b.id);
+  });
+  for (image& i : images) {
+    model.trajectory.world_from_camera.push_back(i.camera_from_world.inverse());
+    model.trajectory.names.push_back(std::move(i.name));
+    model.image_ids.push_back(i.id);
+    model.camera_ids.push_back(i.camera_id);
+  }
+  if (moved > 0) {
+    model.trajectory.warnings.push_back(message(
+        moved, " of ", images.size(), " images have another pose in rigs and frames, which wins"));
+  }
+  model.trajectory =
+      checked_trajectory(std::move(model.trajectory), files.file("images"), "colmap");
+  read_points(model, files, content);
+  return model;
+}
+
+}  // namespace colmap::detail
+
+inline std::vector<std::filesystem::path> find_colmap_models(const std::filesystem::path& path) {
+  if (colmap::detail::find_encoding(path)) return {path};
+  auto models = colmap::detail::numbered_models(path);
+  if (!models.empty()) return models;
+  const std::filesystem::path sparse = path / "sparse";
+  if (colmap::detail::find_encoding(sparse)) return {sparse};
+  return colmap::detail::numbered_models(sparse);
+}
+
+inline std::vector<colmap_model> read_colmap_models(const std::filesystem::path& path,
+                                                    colmap_content content) {
+  std::vector<colmap_model> models;
+  for (const std::filesystem::path& folder : find_colmap_models(path)) {
+    const auto kind = colmap::detail::find_encoding(folder);
+    models.push_back(colmap::detail::read_model(folder, *kind, content));
+  }
+  if (models.empty()) {
+    throw io_error(path,
+                   colmap::detail::is_there(path)
+                       ? "colmap: cameras and images (.bin or .txt) expected here, in numbered "
+                         "folders or in sparse, found none"
+                       : "no such folder");
+  }
+  return models;
+}
+
+inline colmap_model read_colmap(const std::filesystem::path& path, colmap_content content) {
+  std::vector<colmap_model> models = read_colmap_models(path, content);
+  const auto size = [](const colmap_model& m) {
+    return std::pair(m.trajectory.size(), m.n_points);
+  };
+  const auto largest =
+      std::max_element(models.begin(), models.end(),
+                       [&](const auto& a, const auto& b) { return size(a) < size(b); });
+  colmap_model model = std::move(*largest);
+  if (models.size() == 1) return model;
+  std::string others;
+  for (auto m = models.begin(); m != models.end(); ++m) {
+    if (m == largest) continue;
+    others += message(others.empty() ? "" : ", ", m->path.filename().string(), " (",
+                      m->trajectory.size(), " images)");
+  }
+  model.trajectory.warnings.push_back(message("model ", model.path.filename().string(), " of ",
+                                              models.size(), " is read (", model.trajectory.size(),
+                                              " images), not ", others));
+  return model;
+}
+
+inline std::map<std::string, math::camera> cameras_by_name(const colmap_model& model) {
+  std::map<std::string, math::camera> cameras;
+  for (std::size_t i = 0; i < model.trajectory.size(); ++i)
+    cameras[model.trajectory.names[i]] = model.camera(i);
+  return cameras;
+}
+
+}  // namespace aib::io
+
+// aib/io/float_pixels.hpp
+
+namespace aib::io {
+
+/// Reads width x height floats that lie in a file row by row, without compression.
+/// Throws format_error where the image is empty or the file does not hold it.
+[[nodiscard]] inline raster::image<float> read_float_pixels(const input_file& file,
+                                                            std::uint64_t offset,
+                                                            std::size_t width,
+                                                            std::size_t height,
+                                                            std::endian order) {
+  const std::uint64_t available = offset < file.size() ? (file.size() - offset) / sizeof(float) : 0;
+  if (width == 0 || height == 0 || width > available / height) {
+    throw format_error(file.path(),
+                       message(width, "x", height, " floats expected, the file has ", available));
+  }
+  raster::image<float> image(width, height);
+  file.read_at(offset, image.data(), image.size() * sizeof(float));
+  if (order != std::endian::native)
+    for (float& value : image) value = load<float>(&value, order);
+  return image;
+}
+
+}  // namespace aib::io
+
+// aib/io/colmap_depth.hpp
+
+namespace aib::io {
+
+/// Reads a dense map of COLMAP, stereo/depth_maps/NAME.{geometric,photometric}.bin: the text
+/// `W&H&C&`, then floats, little endian, row by row from the top. Planar depth, 0 or negative where
+/// there is none.
+///
+/// Throws format_error where the file is damaged or has not one channel (normal maps have three).
+/// Source: COLMAP, mvs/mat.h.
+inline depth::depth_map read_colmap_depth(const std::filesystem::path& path) {
+  const input_file file(path);
+  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
+  file.read_at(0, begin.data(), begin.size());
+  std::array<std::size_t, 3> size{};
+  std::size_t at = 0;
+  for (std::size_t& n : size) {
+    const std::size_t end = begin.find('&', at);
+    const auto number = parse<std::size_t>(std::string_view(begin).substr(at, end - at));
+    if (end == std::string::npos || !number)
+      throw format_error(path, "colmap map: \"WIDTH&HEIGHT&CHANNELS&\" expected at the begin");
+    n = *number;
+    at = end + 1;
+  }
+  if (size[2] != 1)
+    throw format_error(path, message("colmap map: 1 channel expected, found ", size[2]));
+  return {read_float_pixels(file, at, size[0], size[1], std::endian::little)};
+}
+
+}  // namespace aib::io
+
+// aib/io/number_lines.hpp
+
+namespace aib::io {
+
+/// Fields of a line parted by blanks, by commas, or by both; a comma at the end is allowed. A field
+/// between two commas is empty.
+inline void split_loosely(std::string_view line, std::vector<std::string_view>& fields) {
+  constexpr std::string_view blank = " \t\r\v\f";
+  fields.clear();
+  for (;;) {
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
+    if (line.empty()) return;
+    const std::size_t end = std::min(line.find_first_of(" \t\r\v\f,"), line.size());
+    fields.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
+    if (line.starts_with(',')) line.remove_prefix(1);
+  }
+}
+
+/// Walks the lines of a text that are rows of numbers, parted by blanks or commas. Blank lines and
+/// comments ('#') are skipped; every error names the file, the line and the format.
+class number_lines {
+ public:
+  number_lines(std::string_view text, const std::filesystem::path& path, std::string_view format)
+      : lines_(text, path), format_(format) {}
+
+  /// Moves to the next row; false after the last. Throws format_error where a field is no number.
+  bool next() {
+    if (!lines_.next_content()) return false;
+    split_loosely(lines_.line(), fields_);
+    numbers_.clear();
+    for (const std::string_view field : fields_) {
+      const auto number = parse<double>(field);
+      if (!number) fail(message("a number expected, found '", field, "'"));
+      numbers_.push_back(*number);
+    }
+    return true;
+  }
+
+  [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
+  [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
+  [[nodiscard]] std::size_t line() const { return lines_.number(); }
+
+  /// Refuses a row that has not `n` numbers; `what` names them.
+  void expect(std::size_t n, std::string_view what) const {
+    if (numbers_.size() == n) return;
+    fail(message(n, " numbers (", what, ") expected, found ", numbers_.size()));
+  }
+
+  [[noreturn]] void fail(std::string_view what) const { lines_.fail(message(format_, ": ", what)); }
+
+  /// What `make()` returns; the place is put before what it refuses.
+  template <class Make>
+  auto checked(Make&& make) const {
+    try {
+      return make();
+    } catch (const argument_error& e) {
+      fail(e.what());
+    }
+  }
+
+ private:
+  line_reader lines_;
+  std::string format_;
+  std::vector<std::string_view> fields_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace aib::io
+
+// aib/io/kitti.hpp
+
+namespace aib::io {
+
+/// Poses of a KITTI odometry text file: the 12 numbers of [R | t] by rows a line,
+/// world_from_camera. Neither names nor stamps: line k is frame k. Poses that are not finite stay,
+/// unregistered.
+///
+/// Throws format_error for a line without 12 numbers, a matrix that is not a rotation (see
+/// pose_from_matrix) and a file without a pose.
+/// Source: Geiger, Lenz, Urtasun, "Are we ready for autonomous driving?", CVPR 2012.
+[[nodiscard]] pose::trajectory read_kitti(const std::filesystem::path& path,
+                                          const pose_frame& frame = {});
+
+/// Writes a KITTI file, numbers in their shortest exact form. Throws argument_error where there is
+/// no pose or one is not registered, which the format cannot say.
+void write_kitti(const std::filesystem::path& path, const pose::trajectory& t);
+
+/// Poses of a text file with the 16 numbers of a 4 x 4 matrix by rows a line, world_from_camera:
+/// what Depth Anything 3's streaming writes as camera_poses.txt. Else as read_kitti.
+[[nodiscard]] pose::trajectory read_matrix_lines(const std::filesystem::path& path,
+                                                 const pose_frame& frame = {});
+
+namespace detail {
+
+/// The upper rows of a matrix written by rows; 12 numbers are used.
+inline pose_matrix matrix_of_rows(const std::vector<double>& numbers) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+}
+
+inline pose::trajectory read_pose_rows(const std::filesystem::path& path,
+                                       std::string_view format,
+                                       std::size_t n,
+                                       const pose_frame& frame) {
+  const std::string text = read_file(path);
+  number_lines lines(text, path, format);
+  pose::trajectory t;
+  while (lines.next()) {
+    lines.expect(n, n == 12 ? "3 x 4 matrix by rows" : "4 x 4 matrix by rows");
+    t.world_from_camera.push_back(
+        lines.checked([&] { return pose_from_matrix(matrix_of_rows(lines.numbers()), frame); }));
+  }
+  return checked_trajectory(std::move(t), path, format);
+}
+
+}  // namespace detail
+
+inline pose::trajectory read_kitti(const std::filesystem::path& path, const pose_frame& frame) {
+  return detail::read_pose_rows(path, "kitti", 12, frame);
+}
+
+inline pose::trajectory read_matrix_lines(const std::filesystem::path& path,
+                                          const pose_frame& frame) {
+  return detail::read_pose_rows(path, "matrix lines", 16, frame);
+}
+
+inline void write_kitti(const std::filesystem::path& path, const pose::trajectory& t) {
+  if (t.empty()) throw argument_error("write_kitti: no pose to write");
+  std::string text;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (!t.world_from_camera[i].is_finite()) {
+      throw argument_error(
+          message("write_kitti: pose ", i, " is not registered, which the format cannot say"));
+    }
+    const Eigen::Matrix4d m = t.world_from_camera[i].matrix();
+    for (Eigen::Index k = 0; k < 12; ++k) text += message(m(k / 4, k % 4), k == 11 ? '\n' : ' ');
+  }
+  write_file(path, text);
+}
+
+}  // namespace aib::io
+
+// aib/io/posed_images.hpp
+
+namespace aib::io {
+
+/// Size of images in pixels, for files that do not say it; 0: not known.
+struct image_extent {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+};
+
+/// Poses with the intrinsics of each, from a file that has both.
+struct posed_images {
+  pose::trajectory trajectory = {};
+  std::vector<math::camera> cameras = {};  ///< one a pose, or none where the file has none
+};
+
+}  // namespace aib::io
+
+// aib/io/da3_streaming.hpp
+
+namespace aib::io {
+
+/// Cameras of a text file with `fx fy cx cy` (pixels) a line. The images' size is not in the file:
+/// width and height are 0.
+/// Throws format_error for a line without 4 numbers.
+[[nodiscard]] inline std::vector<math::camera> read_intrinsic_lines(
+    const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  number_lines lines(text, path, "intrinsics");
+  std::vector<math::camera> cameras;
+  while (lines.next()) {
+    lines.expect(4, "fx fy cx cy");
+    const std::vector<double>& n = lines.numbers();
+    cameras.push_back(math::pinhole(0, 0, n[0], n[1], n[2], n[3]));
+  }
+  return cameras;
+}
+
+/// What Depth Anything 3's streaming leaves in a folder: camera_poses.txt (see read_matrix_lines)
+/// and, where it is there, intrinsic.txt with a line a pose. `path` is the folder or
+/// camera_poses.txt.
+/// Throws format_error where the two files differ in length.
+/// Source: Depth-Anything-3, da3_streaming.
+[[nodiscard]] inline posed_images read_da3_streaming(const std::filesystem::path& path,
+                                                     const pose_frame& frame = {}) {
+  const bool folder = std::filesystem::is_directory(path);
+  const std::filesystem::path poses = folder ? path / "camera_poses.txt" : path;
+  const std::filesystem::path intrinsics = poses.parent_path() / "intrinsic.txt";
+  posed_images images{read_matrix_lines(poses, frame), {}};
+  if (!std::filesystem::exists(intrinsics)) return images;
+  images.cameras = read_intrinsic_lines(intrinsics);
+  if (images.cameras.size() != images.trajectory.size()) {
+    throw format_error(intrinsics, message("a line for each of the ", images.trajectory.size(),
+                                           " poses expected, found ", images.cameras.size()));
+  }
+  return images;
+}
+
+}  // namespace aib::io
+
+// aib/io/exr_header.hpp
+
+namespace aib::io {
+
+enum class exr_pixel : std::int32_t { uint32 = 0, half = 1, float32 = 2 };
+
+enum class exr_compression : std::uint8_t {
+  none,
+  rle,
+  zips,
+  zip,
+  piz,
+  pxr24,
+  b44,
+  b44a,
+  dwaa,
+  dwab
+};
+
+struct exr_channel_info {
+  std::string name;
+  exr_pixel type = exr_pixel::float32;
+};
+
+/// Rectangle of pixels, both corners within; y down.
+struct exr_window {
+  std::int32_t min_x = 0, min_y = 0, max_x = -1, max_y = -1;
+
+  [[nodiscard]] std::size_t width() const {
+    return static_cast<std::size_t>(std::int64_t{max_x} - min_x + 1);
+  }
+  [[nodiscard]] std::size_t height() const {
+    return static_cast<std::size_t>(std::int64_t{max_y} - min_y + 1);
+  }
+  friend bool operator==(const exr_window&, const exr_window&) = default;
+};
+
+/// One of the images of a file; most files have one.
+struct exr_part {
+  std::string name = {};
+  std::vector<exr_channel_info> channels = {};
+  exr_compression compression = exr_compression::none;
+  exr_window data = {};                         ///< pixels that are in the file
+  exr_window display = {};                      ///< the picture that they are a part of
+  std::size_t tile_width = 0, tile_height = 0;  ///< 0: scan lines
+  std::uint64_t offsets_at = 0;                 ///< place of the table of blocks in the file
+
+  [[nodiscard]] bool is_tiled() const { return tile_width > 0; }
+  [[nodiscard]] std::size_t pixel_bytes() const {
+    std::size_t n = 0;
+    for (const exr_channel_info& c : channels) n += c.type == exr_pixel::half ? 2u : 4u;
+    return n;
+  }
+};
+
+struct exr_header {
+  std::vector<exr_part> parts = {};
+  bool is_multipart = false;  ///< blocks say which part they belong to
+};
+
+/// Largest image that is read, in pixels.
+inline constexpr std::uint64_t exr_max_pixels = std::uint64_t{1} << 27;
+
+/// Reads and checks the header of an OpenEXR file. Throws format_error where it is damaged, where
+/// the image is larger than exr_max_pixels or than what the file can hold, and where it has what
+/// aib does not read: deep data, sub-sampled channels. Source of the format: "OpenEXR File Layout",
+/// openexr.com.
+exr_header read_exr_header(const input_file& file);
+
+/// "ZIP" and the like.
+[[nodiscard]] constexpr std::string_view name(exr_compression compression) {
+  constexpr std::array<std::string_view, 10> names{"NONE",  "RLE", "ZIPS", "ZIP",  "PIZ",
+                                                   "PXR24", "B44", "B44A", "DWAA", "DWAB"};
+  return names[static_cast<std::size_t>(compression)];
+}
+
+/// Scan lines in a block.
+[[nodiscard]] constexpr std::size_t block_lines(exr_compression compression) {
+  constexpr std::array<std::size_t, 10> lines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return lines[static_cast<std::size_t>(compression)];
+}
+
+namespace detail {
+
+class exr_header_parser {
+ public:
+  explicit exr_header_parser(const input_file& file) : file_(file), stream_(file) {}
+
+  exr_header parse() {
+    constexpr std::uint32_t magic = 20000630;
+    if (file_.size() < 8 || stream_.read_number<std::uint32_t>("exr: magic") != magic)
+      throw format_error(file_.path(), "exr: not an OpenEXR file");
+    parse_flags(stream_.read_number<std::uint32_t>("exr: version"));
+    std::string attribute = take_name();
+    do {
+      if (header_.parts.size() == 4096) fail("exr: more than 4096 parts");
+      parse_part(std::move(attribute));
+    } while (header_.is_multipart && !(attribute = take_name()).empty());
+    place_offsets();
+    return std::move(header_);
+  }
+
+ private:
+  void parse_flags(std::uint32_t version) {
+    constexpr std::uint32_t tiled = 0x200, long_names = 0x400, deep = 0x800, multipart = 0x1000;
+    if ((version & 0xff) != 2) fail(message("exr: version 2 expected, found ", version & 0xff));
+    if ((version & ~(0xffu | tiled | long_names | deep | multipart)) != 0)
+      fail("exr: unknown flags in the version");
+    if ((version & deep) != 0)
+      fail("exr: deep data are not supported; flatten the image and save it with ZIP");
+    is_tiled_ = (version & tiled) != 0;
+    header_.is_multipart = (version & multipart) != 0;
+  }
+
+  std::string take_name() { return stream_.take_name("exr: name of an attribute"); }
+
+  void parse_part(std::string attribute) {
+    exr_part part;
+    seen_ = {};
+    for (; !attribute.empty(); attribute = take_name()) {
+      const std::string type = stream_.take_name("exr: type of an attribute");
+      const auto size = stream_.read_number<std::int32_t>("exr: size of an attribute");
+      if (size < 0) fail(message("exr: an attribute of ", size, " bytes"));
+      const auto n = static_cast<std::size_t>(size);
+      parse_attribute(part, attribute, type, {stream_.take(n, "exr: attribute"), n});
+    }
+    check(part);
+    header_.parts.push_back(std::move(part));
+  }
+
+  struct seen_attributes {
+    bool channels = false, compression = false, data = false, display = false, tiles = false;
+    bool deep = false;
+    std::int64_t n_blocks = -1;
+  };
+
+  void parse_attribute(exr_part& part,
+                       std::string_view name,
+                       std::string_view type,
+                       std::string_view value) {
+    byte_reader in(value, file_.path());
+    const auto is = [&](std::string_view n, std::string_view t) { return name == n && type == t; };
+    if (is("channels", "chlist")) {
+      parse_channels(part, in);
+      seen_.channels = true;
+    } else if (is("compression", "compression")) {
+      const auto code = in.read<std::uint8_t>("exr: compression");
+      if (code > static_cast<std::uint8_t>(exr_compression::dwab))
+        fail(message("exr: unknown compression ", unsigned{code}));
+      part.compression = static_cast<exr_compression>(code);
+      seen_.compression = true;
+    } else if (is("dataWindow", "box2i")) {
+      part.data = parse_window(in);
+      seen_.data = true;
+    } else if (is("displayWindow", "box2i")) {
+      part.display = parse_window(in);
+      seen_.display = true;
+    } else if (is("tiles", "tiledesc")) {
+      part.tile_width = in.read<std::uint32_t>("exr: tiles");
+      part.tile_height = in.read<std::uint32_t>("exr: tiles");
+      seen_.tiles = true;
+    } else if (is("name", "string")) {
+      part.name = value;
+    } else if (is("type", "string")) {
+      seen_.deep = value.starts_with("deep");
+      if (header_.is_multipart) is_tiled_ = value == "tiledimage";
+    } else if (is("chunkCount", "int")) {
+      seen_.n_blocks = in.read<std::int32_t>("exr: chunkCount");
+    }
+  }
+
+  void parse_channels(exr_part& part, byte_reader& in) {
+    for (;;) {
+      exr_channel_info channel;
+      channel.name = in.read_name("exr: name of a channel");
+      if (channel.name.empty()) return;
+      const auto type = in.read<std::int32_t>("exr: type of a channel");
+      if (type < 0 || type > 2) fail(message("exr: channel ", channel.name, ": type ", type));
+      channel.type = static_cast<exr_pixel>(type);
+      in.take(4, "exr: channel");
+      const auto x_sampling = in.read<std::int32_t>("exr: sampling of a channel");
+      const auto y_sampling = in.read<std::int32_t>("exr: sampling of a channel");
+      if (x_sampling != 1 || y_sampling != 1) {
+        fail(message("exr: channel ", channel.name, " is sub-sampled (", x_sampling, "x",
+                     y_sampling, "), which is not supported"));
+      }
+      part.channels.push_back(std::move(channel));
+      if (part.channels.size() > 1024) fail("exr: more than 1024 channels");
+    }
+  }
+
+  exr_window parse_window(byte_reader& in) {
+    exr_window w;
+    w.min_x = in.read<std::int32_t>("exr: window");
+    w.min_y = in.read<std::int32_t>("exr: window");
+    w.max_x = in.read<std::int32_t>("exr: window");
+    w.max_y = in.read<std::int32_t>("exr: window");
+    const bool ordered = w.max_x >= w.min_x && w.max_y >= w.min_y;
+    if (!ordered || w.width() > exr_max_pixels / w.height()) {
+      fail(message("exr: window (", w.min_x, ", ", w.min_y, ") to (", w.max_x, ", ", w.max_y,
+                   ") is empty or larger than ", exr_max_pixels, " pixels"));
+    }
+    return w;
+  }
+
+  void check(exr_part& part) {
+    if (seen_.deep)
+      fail("exr: deep data are not supported; flatten the image and save it with ZIP");
+    if (!seen_.channels || part.channels.empty()) fail("exr: no channels in the header");
+    if (!seen_.compression) fail("exr: no compression in the header");
+    if (!seen_.data) fail("exr: no dataWindow in the header");
+    if (!seen_.display) part.display = part.data;
+    if (!is_tiled_) part.tile_width = part.tile_height = 0;
+    if (is_tiled_ && (!seen_.tiles || part.tile_width == 0 || part.tile_height == 0 ||
+                      part.tile_width > exr_max_pixels / part.tile_height))
+      fail("exr: no size of the tiles in the header");
+    n_blocks_.push_back(block_count(part));
+  }
+
+  std::uint64_t block_count(const exr_part& part) {
+    const auto parts_of = [](std::size_t n, std::size_t size) { return (n + size - 1) / size; };
+    const std::uint64_t needed = part.is_tiled()
+                                     ? parts_of(part.data.width(), part.tile_width) *
+                                           parts_of(part.data.height(), part.tile_height)
+                                     : parts_of(part.data.height(), block_lines(part.compression));
+    if (!header_.is_multipart) return needed;
+    if (seen_.n_blocks < 0 || static_cast<std::uint64_t>(seen_.n_blocks) < needed)
+      fail(message("exr: chunkCount of at least ", needed, " expected, found ", seen_.n_blocks));
+    return static_cast<std::uint64_t>(seen_.n_blocks);
+  }
+
+  void place_offsets() {
+    std::uint64_t at = stream_.offset();
+    for (std::size_t i = 0; i < header_.parts.size(); ++i) {
+      if (n_blocks_[i] > (file_.size() - at) / 8) {
+        throw format_error(file_.path(), at_byte{at},
+                           message("exr: ", n_blocks_[i], " blocks expected, ", file_.size() - at,
+                                   " bytes left in the file"));
+      }
+      header_.parts[i].offsets_at = at;
+      at += 8 * n_blocks_[i];
+    }
+  }
+
+  [[noreturn]] void fail(std::string_view what) const { stream_.fail(what); }
+
+  const input_file& file_;
+  byte_stream stream_;
+  exr_header header_;
+  bool is_tiled_ = false;
+  seen_attributes seen_;
+  std::vector<std::uint64_t> n_blocks_;
+};
+
+}  // namespace detail
+
+inline exr_header read_exr_header(const input_file& file) {
+  return detail::exr_header_parser(file).parse();
+}
+
+}  // namespace aib::io
+
+// aib/io/exr_piz.hpp
+
+/// OpenEXR's PIZ codec: Haar wavelets of 16-bit words, their values renumbered without gaps, and
+/// Huffman codes of up to 58 bits. Every step is checked; a damaged block gives nothing.
+/// Source: the reference implementation of OpenEXR (ImfPizCompressor, ImfWav, ImfHuf).
+namespace aib::io::detail {
+
+/// Bits of a block, highest of each byte first.
+class exr_bits {
+ public:
+  explicit exr_bits(std::string_view bytes) : bytes_(bytes) {}
+
+  /// The next n bits (n <= 32); nothing beyond the end.
+  std::optional<std::uint32_t> take(unsigned n) {
+    if (n > left()) return std::nullopt;
+    const std::uint32_t value = peek(n);
+    at_ += n;
+    return value;
+  }
+
+  /// The next n bits (n <= 32) without moving on, zeros beyond the end.
+  [[nodiscard]] std::uint32_t peek(unsigned n) const {
+    std::uint64_t word = 0;
+    const std::size_t first = at_ / 8;
+    for (std::size_t k = 0; k < 5; ++k) {
+      const auto byte =
+          first + k < bytes_.size() ? static_cast<unsigned char>(bytes_[first + k]) : 0u;
+      word = (word << 8) | byte;
+    }
+    return static_cast<std::uint32_t>((word >> (40 - at_ % 8 - n)) & ((std::uint64_t{1} << n) - 1));
+  }
+
+  void skip(std::size_t n) { at_ += n; }
+  void limit(std::size_t bits) { end_ = at_ + bits; }
+  void align() { at_ = (at_ + 7) / 8 * 8; }
+  [[nodiscard]] std::size_t left() const { return end_ > at_ ? end_ - at_ : 0; }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+  std::size_t end_ = 8 * bytes_.size();
+};
+
+/// Canonical Huffman code of 65537 symbols: the 16-bit words and a sign for runs.
+class piz_huffman {
+ public:
+  static constexpr std::size_t n_symbols = 65537;
+  static constexpr unsigned max_length = 58;
+
+  /// Reads the lengths of the codes of symbols first..last.
+  [[nodiscard]] bool read_lengths(exr_bits& bits, std::size_t first, std::size_t last) {
+    constexpr std::uint32_t short_run = 59, long_run = 63;
+    lengths_.assign(n_symbols, 0);
+    for (std::size_t symbol = first; symbol <= last;) {
+      const auto length = bits.take(6);
+      if (!length) return false;
+      if (*length < short_run) {
+        lengths_[symbol++] = static_cast<std::uint8_t>(*length);
+        continue;
+      }
+      std::size_t run = *length - short_run + 2;
+      if (*length == long_run) {
+        const auto more = bits.take(8);
+        if (!more) return false;
+        run = *more + 6;
+      }
+      if (run > last + 1 - symbol) return false;
+      symbol += run;
+    }
+    return make_codes();
+  }
+
+  /// Decodes `to.size()` words; `run_symbol` repeats the last word as often as the 8 bits behind it
+  /// say.
+  [[nodiscard]] bool decode(exr_bits& bits, std::size_t run_symbol, std::span<std::uint16_t> to) {
+    std::size_t n = 0;
+    while (bits.left() > 0) {
+      const auto symbol = next(bits);
+      if (!symbol) return false;
+      if (*symbol == run_symbol) {
+        const auto run = bits.take(8);
+        if (!run || n == 0 || *run > to.size() - n) return false;
+        std::fill_n(to.begin() + static_cast<std::ptrdiff_t>(n), *run, to[n - 1]);
+        n += *run;
+      } else {
+        if (n == to.size()) return false;
+        to[n++] = static_cast<std::uint16_t>(*symbol);
+      }
+    }
+    return n == to.size();
+  }
+
+ private:
+  static constexpr unsigned table_bits = 14;
+
+  /// Code words of each length follow one another; the longest are the smallest numbers.
+  bool make_codes() {
+    std::array<std::uint64_t, max_length + 1> count{};
+    for (const std::uint8_t length : lengths_) ++count[length];
+    count[0] = 0;
+    std::uint64_t code = 0;
+    for (unsigned length = max_length; length > 0; --length) {
+      first_code_[length] = code;
+      code = (code + count[length]) >> 1;
+    }
+    std::size_t offset = 0;
+    for (unsigned length = 1; length <= max_length; ++length) {
+      first_symbol_[length] = offset;
+      offset += count[length];
+      n_codes_[length] = count[length];
+    }
+    symbols_.resize(offset);
+    auto place = first_symbol_;
+    for (std::size_t symbol = 0; symbol < n_symbols; ++symbol) {
+      if (lengths_[symbol] > 0)
+        symbols_[place[lengths_[symbol]]++] = static_cast<std::uint32_t>(symbol);
+    }
+    return fill_table();
+  }
+
+  /// Short codes are looked up: every continuation of a code leads to its symbol.
+  bool fill_table() {
+    table_.assign(std::size_t{1} << table_bits, {});
+    for (unsigned length = 1; length <= table_bits; ++length) {
+      const unsigned rest = table_bits - length;
+      if (first_code_[length] + n_codes_[length] > std::uint64_t{1} << length) return false;
+      for (std::uint64_t k = 0; k < n_codes_[length]; ++k) {
+        const auto begin = static_cast<std::size_t>((first_code_[length] + k) << rest);
+        std::fill_n(table_.begin() + static_cast<std::ptrdiff_t>(begin), std::size_t{1} << rest,
+                    entry{symbols_[first_symbol_[length] + k], length});
+      }
+    }
+    return true;
+  }
+
+  std::optional<std::uint32_t> next(exr_bits& bits) const {
+    const entry& found = table_[bits.peek(table_bits)];
+    if (found.length > 0) {
+      if (found.length > bits.left()) return std::nullopt;
+      bits.skip(found.length);
+      return found.symbol;
+    }
+    std::uint64_t code = 0;
+    for (unsigned length = 1; length <= max_length; ++length) {
+      const auto bit = bits.take(1);
+      if (!bit) return std::nullopt;
+      code = (code << 1) | *bit;
+      if (code >= first_code_[length] && code - first_code_[length] < n_codes_[length])
+        return symbols_[first_symbol_[length] + (code - first_code_[length])];
+    }
+    return std::nullopt;
+  }
+
+  struct entry {
+    std::uint32_t symbol = 0;
+    unsigned length = 0;
+  };
+  std::vector<std::uint8_t> lengths_;
+  std::array<std::uint64_t, max_length + 1> first_code_{};
+  std::array<std::uint64_t, max_length + 1> n_codes_{};
+  std::array<std::size_t, max_length + 1> first_symbol_{};
+  std::vector<std::uint32_t> symbols_;
+  std::vector<entry> table_;
+};
+
+/// Undoes one step of the wavelet on a pair: low and high become their two neighbours.
+struct piz_pair {
+  std::uint16_t a, b;
+};
+
+template <bool FourteenBits>
+piz_pair unlift(std::uint16_t low, std::uint16_t high) {
+  if constexpr (FourteenBits) {
+    const int h = static_cast<std::int16_t>(high);
+    const int a = static_cast<std::int16_t>(low) + (h & 1) + (h >> 1);
+    return {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(a - h)};
+  } else {
+    const unsigned b = (low - (high >> 1)) & 0xffffu;
+    return {static_cast<std::uint16_t>(high + b - 0x8000u), static_cast<std::uint16_t>(b)};
+  }
+}
+
+/// Undoes the wavelet of a plane: word (x, y) lies at data[x * step_x + y * step_y].
+template <bool FourteenBits>
+void unlift_plane(std::uint16_t* data,
+                  std::size_t width,
+                  std::size_t step_x,
+                  std::size_t height,
+                  std::size_t step_y) {
+  const auto at = [=](std::size_t x, std::size_t y) -> std::uint16_t& {
+    return data[x * step_x + y * step_y];
+  };
+  const auto pair = [](std::uint16_t& low, std::uint16_t& high) {
+    const auto [a, b] = unlift<FourteenBits>(low, high);
+    low = a;
+    high = b;
+  };
+  std::size_t p = 1;
+  while (2 * p <= std::min(width, height)) p *= 2;
+  for (std::size_t step = p / 2; step > 0; step /= 2) {
+    std::size_t y = 0;
+    for (; y + 2 * step <= height; y += 2 * step) {
+      std::size_t x = 0;
+      for (; x + 2 * step <= width; x += 2 * step) {
+        pair(at(x, y), at(x, y + step));
+        pair(at(x + step, y), at(x + step, y + step));
+        pair(at(x, y), at(x + step, y));
+        pair(at(x, y + step), at(x + step, y + step));
+      }
+      if ((width & step) != 0) pair(at(x, y), at(x, y + step));
+    }
+    if ((height & step) != 0)
+      for (std::size_t x = 0; x + 2 * step <= width; x += 2 * step) pair(at(x, y), at(x + step, y));
+  }
+}
+
+/// Expands a PIZ block. `words` says for each channel how many 16-bit words a pixel has; `to` gets
+/// the lines, channel after channel in each. False where the block is damaged.
+inline bool expand_piz(std::string_view from,
+                       std::size_t width,
+                       std::size_t height,
+                       std::span<const std::size_t> words,
+                       std::span<std::uint8_t> to) {
+  constexpr std::size_t bitmap_bytes = 8192;
+  const auto u16 = [&](std::size_t at) { return load<std::uint16_t>(from.data() + at); };
+  if (from.size() < 4) return false;
+  const std::size_t first = u16(0), last = u16(2);
+  from.remove_prefix(4);
+  std::array<std::uint8_t, bitmap_bytes> bitmap{};
+  if (first <= last) {
+    const std::size_t n = last - first + 1;
+    if (last >= bitmap_bytes || n > from.size()) return false;
+    std::copy_n(from.begin(), n, bitmap.begin() + static_cast<std::ptrdiff_t>(first));
+    from.remove_prefix(n);
+  }
+  std::vector<std::uint16_t> value_of(65536, 0);
+  std::size_t n_values = 0;
+  for (std::size_t v = 0; v < value_of.size(); ++v) {
+    if (v == 0 || (bitmap[v / 8] >> (v % 8) & 1) != 0)
+      value_of[n_values++] = static_cast<std::uint16_t>(v);
+  }
+
+  const auto u32 = [&](std::size_t at) { return load<std::uint32_t>(from.data() + at); };
+  if (from.size() < 4 + 20 || u32(0) < 20 || u32(0) > from.size() - 4) return false;
+  from = from.substr(4, u32(0));
+  const std::size_t first_symbol = u32(0), last_symbol = u32(4), n_bits = u32(12);
+  if (first_symbol >= piz_huffman::n_symbols || last_symbol >= piz_huffman::n_symbols) return false;
+  exr_bits bits(from.substr(20));
+  piz_huffman huffman;
+  if (!huffman.read_lengths(bits, first_symbol, last_symbol)) return false;
+  bits.align();
+  if (n_bits > bits.left()) return false;
+  bits.limit(n_bits);
+  std::vector<std::uint16_t> planes(to.size() / 2);
+  if (!huffman.decode(bits, last_symbol, planes)) return false;
+
+  std::uint16_t* plane = planes.data();
+  std::size_t line_offset = 0;
+  std::size_t line_words = 0;
+  for (const std::size_t w : words) line_words += w * width;
+  for (const std::size_t w : words) {
+    for (std::size_t k = 0; k < w; ++k) {
+      const auto undo = n_values - 1 < (1u << 14) ? unlift_plane<true> : unlift_plane<false>;
+      undo(plane + k, width, w, height, w * width);
+    }
+    for (std::size_t y = 0; y < height; ++y) {
+      std::uint8_t* line = to.data() + 2 * (y * line_words + line_offset);
+      for (std::size_t i = 0; i < w * width; ++i) {
+        const std::uint16_t value = value_of[plane[y * w * width + i]];
+        line[2 * i] = static_cast<std::uint8_t>(value & 0xff);
+        line[2 * i + 1] = static_cast<std::uint8_t>(value >> 8);
+      }
+    }
+    plane += w * width * height;
+    line_offset += w * width;
+  }
+  return true;
+}
+
+}  // namespace aib::io::detail
+
+// aib/io/exr_predictor.hpp
+
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+/// What OpenEXR's RLE and ZIP codecs do to bytes before they compress them: the bytes at even
+/// places first, then those at odd places, then differences of neighbours plus 128.
+/// Source: OpenEXR, "OpenEXR File Layout" and the reference implementation (ImfZip).
+namespace aib::io {
+inline namespace AIB_ISA {
+
+/// Differences back to bytes, in place: b[0] = d[0], b[i] = b[i - 1] + d[i] - 128.
+inline void sum_differences(std::uint8_t* bytes, std::size_t n) {
+  if (n == 0) return;
+  bytes[0] = static_cast<std::uint8_t>(bytes[0] + 128);  // the first has no 128 to take off
+  std::size_t i = 0;
+  std::uint8_t sum = 0;
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+  const __m128i bias = _mm_set1_epi8(-128);
+  __m128i carry = _mm_setzero_si128();
+  for (; i + 16 <= n; i += 16) {
+    auto* at = reinterpret_cast<__m128i*>(bytes + i);
+    __m128i x = _mm_add_epi8(_mm_loadu_si128(at), bias);
+    x = _mm_add_epi8(x, _mm_slli_si128(x, 1));
+    x = _mm_add_epi8(x, _mm_slli_si128(x, 2));
+    x = _mm_add_epi8(x, _mm_slli_si128(x, 4));
+    x = _mm_add_epi8(x, _mm_slli_si128(x, 8));
+    _mm_storeu_si128(at, _mm_add_epi8(x, carry));
+    // The last byte sixteen times: the only step that the next block waits for is the addition.
+    const __m128i last = _mm_shufflehi_epi16(_mm_unpackhi_epi8(x, x), 0xff);
+    carry = _mm_add_epi8(carry, _mm_shuffle_epi32(last, 0xff));
+  }
+  if (i > 0) sum = bytes[i - 1];
+#endif
+  for (; i < n; ++i) {
+    sum = static_cast<std::uint8_t>(sum + bytes[i] - 128);
+    bytes[i] = sum;
+  }
+}
+
+/// Takes n bytes in turn from two halves: even[0], odd[0], even[1], ... ; n is even.
+inline void interleave(const std::uint8_t* even,
+                       const std::uint8_t* odd,
+                       std::uint8_t* to,
+                       std::size_t n) {
+  std::size_t i = 0;
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+  for (; 2 * i + 32 <= n; i += 16) {
+    const __m128i a = _mm_loadu_si128(reinterpret_cast<const __m128i*>(even + i));
+    const __m128i b = _mm_loadu_si128(reinterpret_cast<const __m128i*>(odd + i));
+    auto* at = reinterpret_cast<__m128i*>(to + 2 * i);
+    _mm_storeu_si128(at, _mm_unpacklo_epi8(a, b));
+    _mm_storeu_si128(at + 1, _mm_unpackhi_epi8(a, b));
+  }
+#endif
+  for (; 2 * i < n; ++i) {
+    to[2 * i] = even[i];
+    to[2 * i + 1] = odd[i];
+  }
+}
+
+/// The way there, for writing: halves, then differences. `to` holds n bytes, n is even.
+inline void take_differences(const std::uint8_t* bytes, std::uint8_t* to, std::size_t n) {
+  for (std::size_t i = 0; 2 * i < n; ++i) {
+    to[i] = bytes[2 * i];
+    to[n / 2 + i] = bytes[2 * i + 1];
+  }
+  for (std::size_t i = n; i-- > 1;) to[i] = static_cast<std::uint8_t>(to[i] - to[i - 1] + 128);
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::io
+
+// aib/io/inflate.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+#if defined(AIB_WITH_LIBDEFLATE)
+#include <libdeflate.h>
+#else
+#include <zlib.h>
+#endif
+
+namespace aib::io {
+
+/// Expands zlib streams whose size is known. Uses libdeflate where AIB_WITH_LIBDEFLATE is defined
+/// (twice as fast), else zlib. Not to be shared between threads.
+class inflater {
+ public:
+#if defined(AIB_WITH_LIBDEFLATE)
+  inflater() : state_(libdeflate_alloc_decompressor()) {
+    if (!state_) throw std::bad_alloc();
+  }
+
+  /// Whether the stream is sound and holds exactly `n_to` bytes, which are then at `to`.
+  [[nodiscard]] bool expand(const void* from, std::size_t n_from, void* to, std::size_t n_to) {
+    return libdeflate_zlib_decompress(state_.get(), from, n_from, to, n_to, nullptr) ==
+           LIBDEFLATE_SUCCESS;
+  }
+
+ private:
+  struct free_state {
+    void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
+  };
+  std::unique_ptr<libdeflate_decompressor, free_state> state_;
+#else
+  /// Whether the stream is sound and holds exactly `n_to` bytes, which are then at `to`.
+  [[nodiscard]] bool expand(const void* from, std::size_t n_from, void* to, std::size_t n_to) {
+    auto expanded = static_cast<uLongf>(n_to);
+    return uncompress(static_cast<Bytef*>(to), &expanded, static_cast<const Bytef*>(from),
+                      static_cast<uLong>(n_from)) == Z_OK &&
+           expanded == n_to;
+  }
+#endif
+};
+
+}  // namespace aib::io
+#endif
+
+// aib/io/exr_block.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::io::detail {
+
+/// Pixels of a block: lines of `width` pixels, in each line channel after channel.
+struct exr_block_shape {
+  std::size_t width;
+  std::size_t height;
+  std::span<const exr_channel_info> channels;
+  std::size_t bytes;  ///< all of it, expanded
+};
+
+/// Expands runs: a count c < 0 is followed by -c bytes, a count c >= 0 by one byte that stands
+/// c + 1 times. False where the block does not give exactly `to.size()` bytes.
+inline bool expand_runs(std::string_view from, std::span<std::uint8_t> to) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < from.size();) {
+    const int count = static_cast<signed char>(from[i++]);
+    const auto run = static_cast<std::size_t>(count < 0 ? -count : count + 1);
+    const std::size_t taken = count < 0 ? run : 1;
+    if (run > to.size() - n || taken > from.size() - i) return false;
+    if (count < 0) {
+      std::memcpy(to.data() + n, from.data() + i, run);
+    } else {
+      std::memset(to.data() + n, static_cast<unsigned char>(from[i]), run);
+    }
+    n += run;
+    i += taken;
+  }
+  return n == to.size();
+}
+
+/// Expands the planes of a PXR24 block: differences of neighbours, highest byte first; floats have
+/// lost their lowest byte.
+inline void expand_pxr24(std::span<const std::uint8_t> planes,
+                         const exr_block_shape& shape,
+                         std::uint8_t* to) {
+  const std::uint8_t* from = planes.data();
+  for (std::size_t y = 0; y < shape.height; ++y) {
+    for (const exr_channel_info& channel : shape.channels) {
+      const std::size_t n_bytes = channel.type == exr_pixel::half ? 2 : 4;
+      const std::size_t n_planes = channel.type == exr_pixel::float32 ? 3 : n_bytes;
+      std::uint32_t value = 0;
+      for (std::size_t x = 0; x < shape.width; ++x, to += n_bytes) {
+        for (std::size_t k = 0; k < n_planes; ++k)
+          value += std::uint32_t{from[k * shape.width + x]} << (8 * (n_bytes - 1 - k));
+        for (std::size_t k = 0; k < n_bytes; ++k)
+          to[k] = static_cast<std::uint8_t>(value >> (8 * k));
+      }
+      from += n_planes * shape.width;
+    }
+  }
+}
+
+inline std::size_t pxr24_plane_bytes(const exr_block_shape& shape) {
+  std::size_t planes = 0;
+  for (const exr_channel_info& c : shape.channels)
+    planes += c.type == exr_pixel::half ? 2u : c.type == exr_pixel::float32 ? 3u : 4u;
+  return planes * shape.width * shape.height;
+}
+
+/// Expands blocks one after another; its memory is used again.
+class exr_block_decoder {
+ public:
+  /// Expands a block, of which `copy` then takes parts. False where it is damaged.
+  [[nodiscard]] bool decode(exr_compression compression,
+                            std::string_view block,
+                            const exr_block_shape& shape) {
+    raw_ = reinterpret_cast<const std::uint8_t*>(block.data());
+    // A block that the codec could not make smaller is stored as it is.
+    if (block.size() == shape.bytes) return true;
+    if (block.size() > shape.bytes || compression == exr_compression::none) return false;
+    raw_ = nullptr;
+    bytes_.resize(shape.bytes);
+    switch (compression) {
+      case exr_compression::rle:
+        return expand_runs(block, bytes_) && sum();
+      case exr_compression::zips:
+      case exr_compression::zip:
+        return expand(block, bytes_) && sum();
+      case exr_compression::pxr24:
+        return decode_pxr24(block, shape);
+      default:
+        return decode_piz(block, shape);
+    }
+  }
+
+  /// Copies n bytes of the block that was decoded last; `begin` and n are even.
+  void copy(std::size_t begin, std::size_t n, std::uint8_t* to) const {
+    if (raw_) {
+      std::memcpy(to, raw_ + begin, n);
+    } else {
+      const std::uint8_t* even = bytes_.data() + begin / 2;
+      interleave(even, even + bytes_.size() / 2, to, n);
+    }
+  }
+
+ private:
+  bool expand(std::string_view block, std::span<std::uint8_t> to) {
+    return inflater_.expand(block.data(), block.size(), to.data(), to.size());
+  }
+
+  bool sum() {
+    sum_differences(bytes_.data(), bytes_.size());
+    return true;
+  }
+
+  bool decode_pxr24(std::string_view block, const exr_block_shape& shape) {
+    planes_.resize(pxr24_plane_bytes(shape));
+    raw_ = bytes_.data();
+    if (!expand(block, planes_)) return false;
+    expand_pxr24(planes_, shape, bytes_.data());
+    return true;
+  }
+
+  bool decode_piz(std::string_view block, const exr_block_shape& shape) {
+    std::vector<std::size_t> words;
+    for (const exr_channel_info& c : shape.channels)
+      words.push_back(c.type == exr_pixel::half ? 1 : 2);
+    raw_ = bytes_.data();
+    return expand_piz(block, shape.width, shape.height, words, bytes_);
+  }
+
+  inflater inflater_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> planes_;
+  const std::uint8_t* raw_ = nullptr;  ///< the expanded block; null: bytes_ holds two halves
+};
+
+}  // namespace aib::io::detail
+#endif
+
+// aib/io/half.hpp
+
+namespace aib::io {
+
+/// The value of an IEEE 754 half-precision number from its bits; exact.
+[[nodiscard]] constexpr float float_from_half(std::uint16_t bits) {
+  const std::uint32_t sign = std::uint32_t{bits & 0x8000u} << 16;
+  const std::uint32_t exponent = (bits >> 10) & 0x1fu;
+  const std::uint32_t mantissa = bits & 0x3ffu;
+  if (exponent == 0) {  // zero and subnormals: mantissa * 2^-24
+    const float magnitude = static_cast<float>(mantissa) * 0x1p-24f;
+    return sign != 0 ? -magnitude : magnitude;
+  }
+  const std::uint32_t wide = exponent == 31 ? 255 : exponent + (127 - 15);
+  return std::bit_cast<float>(sign | (wide << 23) | (mantissa << 13));
+}
+
+}  // namespace aib::io
+
+// aib/io/exr_channel.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::io {
+
+/// Reads a channel of a part, all of its data window or some of its lines.
+///
+/// lines   lines of the data window, ascending, the same may come twice; empty: all of them. Blocks
+///         without a wanted line are not read.
+///
+/// Halves and unsigned integers become float. Returns data.width() x number of lines.
+/// Codecs: NONE, RLE, ZIPS, ZIP, PIZ, PXR24, scan lines and tiles (the full resolution of
+/// multi-resolution images). Throws format_error for the others and where a block is damaged.
+raster::image<float> read_exr_channel(const input_file& file,
+                                      const exr_header& header,
+                                      std::size_t part,
+                                      std::size_t channel,
+                                      std::span<const std::size_t> lines = {});
+
+namespace detail {
+
+/// Bytes of a file at any place; neighbours are read together.
+class file_window {
+ public:
+  explicit file_window(const input_file& file) : file_(file) {}
+
+  /// n bytes at `offset`, valid until the next call.
+  std::string_view at(std::uint64_t offset, std::size_t n, std::string_view what) {
+    if (offset > file_.size() || n > file_.size() - offset) {
+      throw format_error(file_.path(), at_byte{offset},
+                         message(what, ": ", n, " bytes expected, the file has ", file_.size()));
+    }
+    if (offset < begin_ || offset + n > begin_ + bytes_.size()) {
+      const std::uint64_t wanted = std::max<std::uint64_t>(n, std::uint64_t{1} << 18);
+      bytes_.resize(static_cast<std::size_t>(std::min(wanted, file_.size() - offset)));
+      file_.read_at(offset, bytes_.data(), bytes_.size());
+      begin_ = offset;
+    }
+    return {bytes_.data() + (offset - begin_), n};
+  }
+
+ private:
+  const input_file& file_;
+  std::vector<char> bytes_;
+  std::uint64_t begin_ = 0;
+};
+
+/// Reads one channel block by block.
+class exr_channel_reader {
+ public:
+  exr_channel_reader(const input_file& file,
+                     const exr_header& header,
+                     std::size_t part,
+                     std::size_t channel)
+      : file_(file),
+        window_(file),
+        part_(header.parts[part]),
+        type_(part_.channels[channel].type),
+        part_number_(header.is_multipart ? static_cast<std::int32_t>(part) : -1) {
+    for (std::size_t i = 0; i < channel; ++i)
+      channel_offset_ += part_.channels[i].type == exr_pixel::half ? 2u : 4u;
+    if (part_.compression > exr_compression::pxr24) {
+      throw format_error(file.path(), message("exr: compression ", name(part_.compression),
+                                              " is not supported; save the file with ZIP"));
+    }
+    block_width_ = part_.is_tiled() ? part_.tile_width : part_.data.width();
+    block_height_ = part_.is_tiled() ? part_.tile_height : block_lines(part_.compression);
+    if (std::min(block_width_, part_.data.width()) * std::min(block_height_, part_.data.height()) >
+        max_block_bytes / part_.pixel_bytes())
+      throw format_error(file.path(), "exr: the blocks are larger than 512 MB");
+  }
+
+  raster::image<float> read(std::span<const std::size_t> lines) {
+    const std::size_t width = part_.data.width(), height = part_.data.height();
+    place_rows(lines);
+    raster::image<float> result(width, lines.empty() ? height : lines.size());
+    const std::size_t columns = (width + block_width_ - 1) / block_width_;
+    for (std::size_t row = 0; row * block_height_ < height; ++row) {
+      const std::size_t first = row * block_height_;
+      const std::size_t n = std::min(block_height_, height - first);
+      if (!is_wanted(first, n)) continue;
+      for (std::size_t column = 0; column < columns; ++column) {
+        const std::size_t x = column * block_width_;
+        const exr_block_shape shape = shape_of(std::min(block_width_, width - x), n);
+        decode(row, column, columns, shape);
+        copy(result, x, first, shape);
+      }
+    }
+    repeat_rows(result, lines);
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t max_block_bytes = std::size_t{1} << 29;
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  /// row_of_[y]: where line y goes; none where it is not wanted.
+  void place_rows(std::span<const std::size_t> lines) {
+    row_of_.assign(part_.data.height(), none);
+    for (std::size_t i = 0; i < row_of_.size() && lines.empty(); ++i) row_of_[i] = i;
+    for (std::size_t i = lines.size(); i-- > 0;) {
+      if (lines[i] >= row_of_.size()) throw argument_error("read_exr_channel: no such line");
+      row_of_[lines[i]] = i;
+    }
+  }
+
+  /// Lines that are wanted more than once were read into the first of their rows.
+  static void repeat_rows(raster::image<float>& image, std::span<const std::size_t> lines) {
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      if (lines[i] == lines[i - 1]) std::copy_n(&image(0, i - 1), image.width(), &image(0, i));
+    }
+  }
+
+  bool is_wanted(std::size_t first, std::size_t n) const {
+    return std::any_of(row_of_.begin() + static_cast<std::ptrdiff_t>(first),
+                       row_of_.begin() + static_cast<std::ptrdiff_t>(first + n),
+                       [](std::size_t row) { return row != none; });
+  }
+
+  exr_block_shape shape_of(std::size_t width, std::size_t height) const {
+    return {width, height, part_.channels, width * height * part_.pixel_bytes()};
+  }
+
+  void decode(std::size_t row,
+              std::size_t column,
+              std::size_t columns,
+              const exr_block_shape& shape) {
+    const std::size_t index = row * columns + column;
+    const std::string_view table = window_offsets(index);
+    const auto offset = load<std::uint64_t>(table.data());
+    const std::size_t n_fields = (part_number_ >= 0 ? 1u : 0u) + (part_.is_tiled() ? 5u : 2u);
+    const std::string_view fields = window_.at(offset, 4 * n_fields, "exr: block");
+    const auto field = [&](std::size_t i) { return load<std::int32_t>(fields.data() + 4 * i); };
+    std::size_t at = 0;
+    bool right = part_number_ < 0 || field(at++) == part_number_;
+    if (part_.is_tiled()) {
+      right = right && field(at) == static_cast<std::int32_t>(column) &&
+              field(at + 1) == static_cast<std::int32_t>(row) && field(at + 2) == 0 &&
+              field(at + 3) == 0;
+      at += 4;
+    } else {
+      const std::int64_t y = part_.data.min_y + static_cast<std::int64_t>(row * block_height_);
+      right = right && field(at++) == y;
+    }
+    if (!right)
+      fail(offset, message("exr: block ", index, " is not at its place; the file is not complete"));
+    const std::int32_t size = field(at);
+    if (size < 0 || static_cast<std::size_t>(size) > shape.bytes)
+      fail(offset, message("exr: block ", index, " of ", size, " bytes, at most ", shape.bytes,
+                           " expected"));
+    const std::string_view block =
+        window_.at(offset + 4 * n_fields, static_cast<std::size_t>(size), "exr: block");
+    if (!decoder_.decode(part_.compression, block, shape))
+      fail(offset, message("exr: block ", index, " is damaged (", name(part_.compression), ")"));
+  }
+
+  /// The place of a block; the table of them is read in one piece.
+  std::string_view window_offsets(std::size_t index) {
+    if (offsets_.empty()) {
+      const std::size_t columns = (part_.data.width() + block_width_ - 1) / block_width_;
+      const std::size_t rows = (part_.data.height() + block_height_ - 1) / block_height_;
+      offsets_.resize(8 * columns * rows);
+      file_.read_at(part_.offsets_at, offsets_.data(), offsets_.size());
+    }
+    return {offsets_.data() + 8 * index, 8};
+  }
+
+  /// Copies the wanted lines of the decoded block to their rows.
+  void copy(raster::image<float>& to,
+            std::size_t x,
+            std::size_t first,
+            const exr_block_shape& shape) {
+    const std::size_t line_bytes = shape.width * part_.pixel_bytes();
+    const std::size_t pixel = type_ == exr_pixel::half ? 2 : 4;
+    row_bytes_.resize(shape.width * pixel);
+    for (std::size_t y = 0; y < shape.height; ++y) {
+      const std::size_t row = row_of_[first + y];
+      if (row == none) continue;
+      const std::size_t begin = y * line_bytes + channel_offset_ * shape.width;
+      float* const pixels = &to(x, row);
+      if (type_ == exr_pixel::float32 && std::endian::native == std::endian::little) {
+        decoder_.copy(begin, row_bytes_.size(), reinterpret_cast<std::uint8_t*>(pixels));
+      } else {
+        decoder_.copy(begin, row_bytes_.size(), row_bytes_.data());
+        convert({pixels, shape.width});
+      }
+    }
+  }
+
+  void convert(std::span<float> pixels) const {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const std::uint8_t* from = row_bytes_.data();
+      switch (type_) {
+        case exr_pixel::half:
+          pixels[i] = float_from_half(load<std::uint16_t>(from + 2 * i));
+          break;
+        case exr_pixel::uint32:
+          pixels[i] = static_cast<float>(load<std::uint32_t>(from + 4 * i));
+          break;
+        default:
+          pixels[i] = load<float>(from + 4 * i);
+      }
+    }
+  }
+
+  [[noreturn]] void fail(std::uint64_t offset, std::string_view what) const {
+    throw format_error(file_.path(), at_byte{offset}, what);
+  }
+
+  const input_file& file_;
+  file_window window_;
+  const exr_part& part_;
+  exr_pixel type_;
+  std::int32_t part_number_;        ///< -1: the file has one part
+  std::size_t channel_offset_ = 0;  ///< bytes of the channels before, a pixel
+  std::size_t block_width_ = 0, block_height_ = 0;
+  std::vector<char> offsets_;
+  std::vector<std::size_t> row_of_;
+  std::vector<std::uint8_t> row_bytes_;
+  exr_block_decoder decoder_;
+};
+
+}  // namespace detail
+
+inline raster::image<float> read_exr_channel(const input_file& file,
+                                             const exr_header& header,
+                                             std::size_t part,
+                                             std::size_t channel,
+                                             std::span<const std::size_t> lines) {
+  return detail::exr_channel_reader(file, header, part, channel).read(lines);
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/exr.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+#include <zlib.h>
+
+namespace aib::io {
+
+struct exr_options {
+  std::string channel = {};  ///< name of the channel; empty: chosen, see read_exr
+  double max_depth = 1e9;    ///< this and beyond is background
+  /// Size of the result, by nearest neighbour; 0: that of the file. Only the lines that are needed
+  /// are decoded.
+  std::size_t width = 0, height = 0;
+  raster::nearest_rule rule = raster::nearest_rule::centre;
+};
+
+/// Reads a depth map from an OpenEXR file.
+///
+/// The channel: the one that is named; else `*.Depth.Z`, `Z`, `*.V` or `V`, `Y`; else R where R, G
+/// and B are equal; else the only one. Channels of a part with a name may be named with it:
+/// `part.channel`.
+/// The data window is pasted into the display window; pixels outside of it are 0. Background
+/// becomes 0: max_depth (Blender's 1e10) and beyond, infinity, and 65504 in half channels. Half
+/// channels hold 11 bits, 1.6 cm at 20 m: the warnings say so.
+///
+/// Throws format_error where the file is damaged, has no such channel, or has what aib does not
+/// read (see read_exr_header, read_exr_channel).
+depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options = {});
+
+struct exr_write_options {
+  std::string channel = "Z";
+  exr_compression compression = exr_compression::zip;  ///< none, zips or zip
+};
+
+/// Writes one float channel as scan lines. Throws argument_error for an empty image or another
+/// compression, io_error where the file cannot be written.
+void write_exr(const std::filesystem::path& path,
+               raster::view<const float> depth,
+               const exr_write_options& options = {});
+
+namespace detail {
+
+struct exr_choice {
+  std::size_t part;
+  std::size_t channel;
+  bool is_gray = false;  ///< R, of which G and B must be copies
+};
+
+/// Finds the channel that holds depth.
+class exr_chooser {
+ public:
+  exr_chooser(const exr_header& header, const std::filesystem::path& path) : path_(path) {
+    for (std::size_t p = 0; p < header.parts.size(); ++p) {
+      const exr_part& part = header.parts[p];
+      for (std::size_t c = 0; c < part.channels.size(); ++c) {
+        const std::string& plain = part.channels[c].name;
+        candidates_.push_back({plain, part.name.empty() ? plain : part.name + "." + plain, {p, c}});
+      }
+    }
+  }
+
+  exr_choice choose(std::string_view wanted) const {
+    if (!wanted.empty()) return named(wanted);
+    const auto full = [](std::string_view end) {
+      return [=](const candidate& c) { return has_last(c.full, end); };
+    };
+    const auto plain = [](std::string_view name) {
+      return [=](const candidate& c) { return c.plain == name; };
+    };
+    if (const auto found = first(full("Depth.Z"))) return *found;
+    if (const auto found = first(plain("Z"))) return *found;
+    if (const auto found = first(full("V"))) return *found;
+    if (const auto found = first(plain("Y"))) return *found;
+    if (candidates_.size() == 1) return candidates_[0].place;
+    const auto r = first(plain("R")), g = first(plain("G")), b = first(plain("B"));
+    if (r && g && b && r->part == g->part && r->part == b->part) return {r->part, r->channel, true};
+    throw format_error(path_, message("exr: no channel looks like depth; name one of ", names()));
+  }
+
+  std::string names() const {
+    std::string list;
+    for (std::size_t i = 0; i < candidates_.size() && i < 20; ++i)
+      list += (i == 0 ? "" : ", ") + candidates_[i].full;
+    return candidates_.size() > 20 ? list + ", ..." : list;
+  }
+
+ private:
+  struct candidate {
+    std::string plain;
+    std::string full;  ///< with the name of its part
+    exr_choice place;
+  };
+
+  /// Whether the name is `end` or its last layer is: "a.Depth.Z" has the last "Depth.Z".
+  static bool has_last(std::string_view name, std::string_view end) {
+    return name == end || (name.size() > end.size() && name.ends_with(end) &&
+                           name[name.size() - end.size() - 1] == '.');
+  }
+
+  template <class Predicate>
+  std::optional<exr_choice> first(Predicate predicate) const {
+    const auto found = std::find_if(candidates_.begin(), candidates_.end(), predicate);
+    return found == candidates_.end() ? std::nullopt : std::optional(found->place);
+  }
+
+  exr_choice named(std::string_view wanted) const {
+    if (const auto found = first([&](const candidate& c) { return c.full == wanted; }))
+      return *found;
+    if (const auto found = first([&](const candidate& c) { return c.plain == wanted; }))
+      return *found;
+    throw format_error(path_, message("exr: no channel \"", wanted, "\"; there are ", names()));
+  }
+
+  const std::filesystem::path& path_;
+  std::vector<candidate> candidates_;
+};
+
+/// Source line in the data window for each target line; lines outside of it have none.
+struct exr_rows {
+  std::vector<std::size_t> lines;   ///< wanted lines of the data window, ascending
+  std::vector<std::size_t> target;  ///< the target line of each
+};
+
+inline exr_rows needed_rows(const exr_part& part, std::size_t height, raster::nearest_rule rule) {
+  exr_rows rows;
+  for (std::size_t y = 0; y < height; ++y) {
+    const auto line =
+        static_cast<std::int64_t>(raster::nearest_index(y, part.display.height(), height, rule)) +
+        part.display.min_y - part.data.min_y;
+    if (line < 0 || line >= static_cast<std::int64_t>(part.data.height())) continue;
+    rows.lines.push_back(static_cast<std::size_t>(line));
+    rows.target.push_back(y);
+  }
+  return rows;
+}
+
+/// A channel within its display window at the size that is asked for.
+inline raster::image<float> read_exr_picture(const input_file& file,
+                                             const exr_header& header,
+                                             const exr_choice& choice,
+                                             const exr_options& options) {
+  const exr_part& part = header.parts[choice.part];
+  const std::size_t full_width = part.display.width(), full_height = part.display.height();
+  const std::size_t width = options.width ? options.width : full_width;
+  const std::size_t height = options.height ? options.height : full_height;
+  if (part.data == part.display && width == full_width && height == full_height)
+    return read_exr_channel(file, header, choice.part, choice.channel);
+
+  raster::image<float> result(width, height);
+  const exr_rows rows = needed_rows(part, height, options.rule);
+  if (rows.lines.empty()) return result;
+  const auto source = read_exr_channel(file, header, choice.part, choice.channel, rows.lines);
+  for (std::size_t x = 0; x < width; ++x) {
+    const auto column =
+        static_cast<std::int64_t>(raster::nearest_index(x, full_width, width, options.rule)) +
+        part.display.min_x - part.data.min_x;
+    if (column < 0 || column >= static_cast<std::int64_t>(source.width())) continue;
+    for (std::size_t i = 0; i < rows.target.size(); ++i)
+      result(x, rows.target[i]) = source(static_cast<std::size_t>(column), i);
+  }
+  return result;
+}
+
+/// Sets pixels of `from` and beyond to 0 and counts them.
+inline std::size_t clear_background(raster::image<float>& image, float from) {
+  std::size_t n = 0;
+  for (float& depth : image) {
+    const bool background = depth >= from;
+    n += background ? 1u : 0u;
+    depth = background ? 0.0f : depth;
+  }
+  return n;
+}
+
+}  // namespace detail
+
+inline depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options) {
+  const input_file file(path);
+  const exr_header header = read_exr_header(file);
+  const detail::exr_chooser chooser(header, path);
+  const detail::exr_choice choice = chooser.choose(options.channel);
+  const exr_part& part = header.parts[choice.part];
+  const exr_channel_info& channel = part.channels[choice.channel];
+
+  depth::depth_map result{detail::read_exr_picture(file, header, choice, options)};
+  if (choice.is_gray) {
+    for (const char* other : {"G", "B"}) {
+      auto same = options;
+      same.channel = other;
+      if (detail::read_exr_picture(file, header, chooser.choose(other), same) != result.values)
+        throw format_error(path, message("exr: R, G and B differ, this is no depth; name one of ",
+                                         chooser.names()));
+    }
+  }
+  const bool is_half = channel.type == exr_pixel::half;
+  const double limit = is_half ? std::min(options.max_depth, 65504.0) : options.max_depth;
+  const std::size_t n = detail::clear_background(result.values, static_cast<float>(limit));
+  if (n > 0) {
+    result.warnings.push_back(
+        message(n, " of ", result.values.size(), " pixels are background (depth >= ", limit, ")"));
+  }
+  if (is_half) {
+    result.warnings.push_back(
+        message("channel ", channel.name, " is half: 11 bits, 1.6 cm at a depth of 20 m"));
+  }
+  if (part.data != part.display)
+    result.warnings.push_back("the data window is not the display window; it was pasted");
+  return result;
+}
+
+namespace detail {
+
+/// Header and blocks of a file with one float channel.
+class exr_writer {
+ public:
+  exr_writer(raster::view<const float> depth, const exr_write_options& options)
+      : depth_(depth), options_(options) {}
+
+  std::string bytes() {
+    write_header();
+    const std::size_t lines = block_lines(options_.compression);
+    const std::size_t n_blocks = (depth_.height + lines - 1) / lines;
+    const std::size_t table = out_.size();
+    out_.resize(table + 8 * n_blocks);
+    for (std::size_t i = 0; i < n_blocks; ++i) {
+      std::string offset;
+      store(offset, static_cast<std::uint64_t>(out_.size()));
+      out_.replace(table + 8 * i, 8, offset);
+      write_block(i * lines, std::min(lines, depth_.height - i * lines));
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void write_header() {
+    const auto w = static_cast<std::int32_t>(depth_.width - 1);
+    const auto h = static_cast<std::int32_t>(depth_.height - 1);
+    store(out_, std::uint32_t{20000630});
+    store(out_, std::uint32_t{2});
+    attribute("channels", "chlist", channel_list());
+    attribute("compression", "compression",
+              std::string(1, static_cast<char>(options_.compression)));
+    const std::string window = numbers<std::int32_t>({0, 0, w, h});
+    attribute("dataWindow", "box2i", window);
+    attribute("displayWindow", "box2i", window);
+    attribute("lineOrder", "lineOrder", std::string(1, '\0'));
+    attribute("pixelAspectRatio", "float", numbers({1.0f}));
+    attribute("screenWindowCenter", "v2f", numbers({0.0f, 0.0f}));
+    attribute("screenWindowWidth", "float", numbers({1.0f}));
+    out_ += '\0';
+  }
+
+  std::string channel_list() const {
+    std::string list = options_.channel + '\0';
+    list += numbers<std::int32_t>({static_cast<std::int32_t>(exr_pixel::float32), 0, 1, 1});
+    return list + '\0';
+  }
+
+  template <class T>
+  static std::string numbers(std::initializer_list<T> values) {
+    std::string bytes;
+    for (const T v : values) store(bytes, v);
+    return bytes;
+  }
+
+  void attribute(std::string_view name, std::string_view type, const std::string& value) {
+    out_.append(name) += '\0';
+    out_.append(type) += '\0';
+    store(out_, static_cast<std::int32_t>(value.size()));
+    out_ += value;
+  }
+
+  void write_block(std::size_t y, std::size_t n) {
+    raw_.clear();
+    for (std::size_t i = 0; i < n; ++i)
+      for (const float depth : depth_.row(y + i)) store(raw_, depth);
+    std::string_view block = raw_;
+    if (options_.compression != exr_compression::none && compress_raw()) block = packed_;
+    store(out_, static_cast<std::int32_t>(y));
+    store(out_, static_cast<std::int32_t>(block.size()));
+    out_ += block;
+  }
+
+  /// Whether the block became smaller.
+  bool compress_raw() {
+    std::vector<std::uint8_t> differences(raw_.size());
+    take_differences(reinterpret_cast<const std::uint8_t*>(raw_.data()), differences.data(),
+                     raw_.size());
+    uLongf size = compressBound(static_cast<uLong>(raw_.size()));
+    packed_.resize(size);
+    const int code = compress2(reinterpret_cast<Bytef*>(packed_.data()), &size, differences.data(),
+                               static_cast<uLong>(raw_.size()), 4);
+    packed_.resize(code == Z_OK ? size : 0);
+    return code == Z_OK && packed_.size() < raw_.size();
+  }
+
+  raster::view<const float> depth_;
+  const exr_write_options& options_;
+  std::string out_;
+  std::string raw_;
+  std::string packed_;
+};
+
+}  // namespace detail
+
+inline void write_exr(const std::filesystem::path& path,
+                      raster::view<const float> depth,
+                      const exr_write_options& options) {
+  if (depth.empty() || depth.size() > exr_max_pixels)
+    throw argument_error(message("io::write_exr: an image of ", depth.width, "x", depth.height));
+  if (options.compression != exr_compression::none &&
+      options.compression != exr_compression::zips && options.compression != exr_compression::zip)
+    throw argument_error("io::write_exr: compression none, zips or zip expected");
+  if (options.channel.empty() || options.channel.size() > 31)
+    throw argument_error("io::write_exr: a channel name of 1 to 31 characters expected");
+  write_file(path, detail::exr_writer(depth, options).bytes());
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/depth.hpp
+
+#if defined(AIB_WITH_EXR)
+#endif
+
+namespace aib::io {
+
+struct depth_options {
+  std::string channel = {};  ///< EXR: name of the channel; empty: chosen, see read_exr
+  double scale = 0;          ///< stored value of one unit of length; 0: that of the format
+  double max_depth = std::numeric_limits<double>::infinity();  ///< this and beyond becomes 0
+  std::size_t width = 0, height = 0;  ///< size of the result by nearest neighbour; 0: the file's
+  raster::nearest_rule rule = raster::nearest_rule::centre;
+};
+
+namespace detail {
+
+inline depth::depth_map read_depth_as_stored(const std::filesystem::path& path,
+                                             const depth_options& options) {
+  switch (kind_of(path)) {
+    case file_kind::colmap_map:
+      return read_colmap_depth(path);
+    case file_kind::exr:
+#if defined(AIB_WITH_EXR)
+      return read_exr(path, {.channel = options.channel,
+                             .width = options.width,
+                             .height = options.height,
+                             .rule = options.rule});
+#else
+      throw format_error(path, "this build of aib reads no EXR; build it with zlib");
+#endif
+    default:
+      throw format_error(path, "a depth map expected: EXR, COLMAP .bin");
+  }
+}
+
+}  // namespace detail
+
+/// Reads a depth map; the format is told from the content, then from the extension. Pixels without
+/// depth are 0 or not finite.
+///
+/// Throws format_error where the format is not known or the file is damaged, io_error where it
+/// cannot be read, argument_error where an option has no meaning.
+inline depth::depth_map read_depth(const std::filesystem::path& path,
+                                   const depth_options& options = {}) {
+  if (!(options.scale >= 0) || !(options.max_depth > 0))
+    throw argument_error("io::read_depth: scale >= 0 and max_depth > 0 expected");
+  depth::depth_map result = detail::read_depth_as_stored(path, options);
+  if (options.scale > 0) {
+    for (float& depth : result.values)
+      depth = static_cast<float>(static_cast<double>(depth) / options.scale);
+  }
+  std::size_t n_far = 0;
+  for (float& depth : result.values) {
+    if (!(static_cast<double>(depth) >= options.max_depth)) continue;
+    depth = 0;
+    ++n_far;
+  }
+  if (n_far > 0)
+    result.warnings.push_back(message(n_far, " of ", result.values.size(),
+                                      " pixels are at max_depth ", options.max_depth,
+                                      " or beyond"));
+  const std::size_t width = options.width ? options.width : result.values.width();
+  const std::size_t height = options.height ? options.height : result.values.height();
+  if (width != result.values.width() || height != result.values.height())
+    result.values = raster::resample_nearest<float>(result.values, width, height, options.rule);
+  return result;
+}
+
+/// Writes a depth map in the format of the extension: .exr (ZIP, float).
+/// Throws argument_error for another extension.
+inline void write_depth(const std::filesystem::path& path, raster::view<const float> depth) {
+#if defined(AIB_WITH_EXR)
+  if (extension_of(path) == ".exr") return write_exr(path, depth);
+#endif
+  throw argument_error(message("io::write_depth: the extension .exr expected, found \"",
+                               path.extension().string(), "\""));
+}
+
+}  // namespace aib::io
+
+// aib/io/euroc.hpp
+
+namespace aib::io {
+
+/// Poses of a EuRoC MAV csv file (state_groundtruth_estimate0/data.csv, vicon0/data.csv, or a
+/// pose file of its kind): `stamp [ns], x, y, z, qw, qx, qy, qz` and columns that are not read.
+///
+/// The poses are those of the body that the file is about (IMU or marker), world_from_body: apply
+/// the camera's calibration where cameras are compared. Stamps become seconds.
+/// Throws format_error for a line with fewer than 8 numbers, a stamp that is no number of
+/// nanoseconds, a zero quaternion and a file without a pose.
+/// Source: Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016.
+[[nodiscard]] inline pose::trajectory read_euroc(const std::filesystem::path& path,
+                                                 const pose_frame& frame = {}) {
+  constexpr std::int64_t ns_per_s = 1'000'000'000;
+  const std::string text = read_file(path);
+  number_lines lines(text, path, "euroc");
+  pose::trajectory t;
+  while (lines.next()) {
+    const std::vector<double>& n = lines.numbers();
+    if (n.size() < 8) {
+      lines.fail(
+          message("at least 8 numbers (stamp x y z qw qx qy qz) expected, found ", n.size()));
+    }
+    const auto stamp_ns = parse<std::int64_t>(lines.fields().front());
+    if (!stamp_ns) {
+      lines.fail(
+          message("a stamp in whole nanoseconds expected, found '", lines.fields().front(), "'"));
+    }
+    t.stamps_s.push_back(static_cast<double>(*stamp_ns / ns_per_s) +
+                         static_cast<double>(*stamp_ns % ns_per_s) / double{ns_per_s});
+    t.world_from_camera.push_back(lines.checked([&] {
+      return pose_from_quaternion({n[4], n[5], n[6], n[7]}, {n[1], n[2], n[3]}, frame);
+    }));
+  }
+  return checked_trajectory(std::move(t), path, "euroc");
+}
+
+}  // namespace aib::io
+
 // aib/io/fingerprint.hpp
 
 namespace aib::io {
@@ -3189,25 +10429,6 @@ inline fingerprint fingerprint_of(const std::filesystem::path& path) {
     hash.add({piece.data(), n});
   }
   return {file.size(), hash.digest()};
-}
-
-}  // namespace aib::io
-
-// aib/io/half.hpp
-
-namespace aib::io {
-
-/// The value of an IEEE 754 half-precision number from its bits; exact.
-[[nodiscard]] constexpr float float_from_half(std::uint16_t bits) {
-  const std::uint32_t sign = std::uint32_t{bits & 0x8000u} << 16;
-  const std::uint32_t exponent = (bits >> 10) & 0x1fu;
-  const std::uint32_t mantissa = bits & 0x3ffu;
-  if (exponent == 0) {  // zero and subnormals: mantissa * 2^-24
-    const float magnitude = static_cast<float>(mantissa) * 0x1p-24f;
-    return sign != 0 ? -magnitude : magnitude;
-  }
-  const std::uint32_t wide = exponent == 31 ? 255 : exponent + (127 - 15);
-  return std::bit_cast<float>(sign | (wide << 23) | (mantissa << 13));
 }
 
 }  // namespace aib::io
@@ -3703,6 +10924,1754 @@ inline std::string npy_bytes(const array& a) {
 
 inline void write_npy(const std::filesystem::path& path, const array& a) {
   write_file(path, npy_bytes(a));
+}
+
+}  // namespace aib::io
+
+// aib/io/pose_arrays.hpp
+
+namespace aib::io {
+
+/// Poses of an array of N x 4 x 4 or N x 3 x 4 numbers, or of one such matrix; leading axes of
+/// length 1 are dropped. `path` names the source in errors.
+/// Throws format_error for another shape and a matrix that is not a pose (see pose_from_matrix).
+[[nodiscard]] pose::trajectory poses_of_array(const array& matrices,
+                                              const pose_frame& frame,
+                                              const std::filesystem::path& path);
+
+/// Cameras of an array of N x 3 x 3 intrinsic matrices in pixels of an image of the given size.
+/// Throws format_error for another shape.
+[[nodiscard]] std::vector<math::camera> cameras_of_array(const array& matrices,
+                                                         std::uint64_t width,
+                                                         std::uint64_t height,
+                                                         const std::filesystem::path& path);
+
+/// The poses as an array of N x 4 x 4 doubles, as they are written in `frame`.
+[[nodiscard]] array array_of_poses(const pose::trajectory& t, const pose_frame& frame = {});
+
+namespace detail {
+
+/// The shape without its leading ones, with at least `axes` axes.
+inline std::vector<std::size_t> squeezed(const std::vector<std::size_t>& shape, std::size_t axes) {
+  std::vector<std::size_t> s = shape;
+  while (s.size() > axes && s.front() == 1) s.erase(s.begin());
+  if (s.size() + 1 == axes) s.insert(s.begin(), 1);
+  return s;
+}
+
+}  // namespace detail
+
+inline pose::trajectory poses_of_array(const array& matrices,
+                                       const pose_frame& frame,
+                                       const std::filesystem::path& path) {
+  const auto shape = detail::squeezed(matrices.shape, 3);
+  if (shape.size() != 3 || (shape[1] != 3 && shape[1] != 4) || shape[2] != 4) {
+    throw format_error(path, message("poses: shape (N, 4, 4) or (N, 3, 4) expected, found ",
+                                     text_of_shape(matrices.shape)));
+  }
+  using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const std::vector<double> numbers = matrices.values<double>();
+  pose::trajectory t;
+  for (std::size_t i = 0; i < shape[0]; ++i) {
+    const pose_matrix m = Eigen::Map<const rows>(numbers.data() + i * shape[1] * 4);
+    try {
+      t.world_from_camera.push_back(pose_from_matrix(m, frame));
+    } catch (const argument_error& e) {
+      throw format_error(path, message("poses: matrix ", i, ": ", e.what()));
+    }
+  }
+  return checked_trajectory(std::move(t), path, "poses");
+}
+
+inline std::vector<math::camera> cameras_of_array(const array& matrices,
+                                                  std::uint64_t width,
+                                                  std::uint64_t height,
+                                                  const std::filesystem::path& path) {
+  const auto shape = detail::squeezed(matrices.shape, 3);
+  if (shape.size() != 3 || shape[1] != 3 || shape[2] != 3) {
+    throw format_error(path, message("intrinsics: shape (N, 3, 3) expected, found ",
+                                     text_of_shape(matrices.shape)));
+  }
+  const std::vector<double> numbers = matrices.values<double>();
+  std::vector<math::camera> cameras;
+  for (std::size_t i = 0; i < shape[0]; ++i) {
+    const std::span k = std::span(numbers).subspan(i * 9, 9);
+    cameras.push_back(math::pinhole(width, height, k[0], k[4], k[2], k[5]));
+  }
+  return cameras;
+}
+
+inline array array_of_poses(const pose::trajectory& t, const pose_frame& frame) {
+  std::vector<double> numbers;
+  for (const math::rigid3& pose : t.world_from_camera) {
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m = pose_in_frame(pose, frame).matrix();
+    numbers.insert(numbers.end(), m.data(), m.data() + m.size());
+  }
+  return make_array<double>({t.size(), 4, 4}, numbers);
+}
+
+}  // namespace aib::io
+
+// aib/io/pose_format.hpp
+
+namespace aib::io {
+
+/// Formats of camera poses.
+enum class pose_format {
+  tum,
+  kitti,
+  euroc,
+  log,  ///< Tanks and Temples
+  da3,  ///< Depth Anything 3's streaming: 4 x 4 matrices, one a line
+  colmap,
+  transforms,
+  opensfm,
+  metashape,
+  reality_capture,
+  npy,
+  npz,
+};
+
+/// A format and the name by which options call it.
+struct pose_format_name {
+  pose_format format;
+  std::string_view name;
+};
+
+inline constexpr std::array<pose_format_name, 12> pose_format_names{{
+    {pose_format::tum, "tum"},
+    {pose_format::kitti, "kitti"},
+    {pose_format::euroc, "euroc"},
+    {pose_format::log, "log"},
+    {pose_format::da3, "da3"},
+    {pose_format::colmap, "colmap"},
+    {pose_format::transforms, "transforms"},
+    {pose_format::opensfm, "opensfm"},
+    {pose_format::metashape, "metashape"},
+    {pose_format::reality_capture, "reality_capture"},
+    {pose_format::npy, "npy"},
+    {pose_format::npz, "npz"},
+}};
+
+[[nodiscard]] constexpr std::string_view name(pose_format format) {
+  return pose_format_names[static_cast<std::size_t>(format)].name;
+}
+
+/// The format of a file or folder: from its content, then from its extension.
+/// Throws io_error where there is nothing at `path`, format_error where the format cannot be told.
+[[nodiscard]] pose_format detect_pose_format(const std::filesystem::path& path);
+
+namespace detail {
+
+inline std::optional<pose_format> format_of_folder(const std::filesystem::path& folder) {
+  if (!find_colmap_models(folder).empty()) return pose_format::colmap;
+  if (std::filesystem::exists(folder / "camera_poses.txt")) return pose_format::da3;
+  if (std::filesystem::exists(folder / "transforms.json")) return pose_format::transforms;
+  if (std::filesystem::exists(folder / "reconstruction.json")) return pose_format::opensfm;
+  return std::nullopt;
+}
+
+/// Whether the path names a file of a COLMAP model.
+inline bool is_colmap_file(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 5> stems{"cameras", "images", "points3D", "rigs",
+                                                  "frames"};
+  const bool known = std::find(stems.begin(), stems.end(), path.stem().string()) != stems.end();
+  return known && (path.extension() == ".bin" || path.extension() == ".txt") &&
+         !find_colmap_models(path.parent_path()).empty();
+}
+
+inline bool is_number(std::string_view field) { return parse<double>(field).has_value(); }
+
+/// The format of the first two rows of a text.
+inline std::optional<pose_format> format_of_rows(const std::vector<std::string_view>& first,
+                                                 const std::vector<std::string_view>& second) {
+  constexpr double least_ns = 1e14;  // a day in nanoseconds; in seconds it is beyond any clock
+  if (first.empty() || !std::all_of(first.begin(), first.end(), is_number)) return std::nullopt;
+  const std::size_t n = first.size();
+  if (n == 3 && second.size() == 4) return pose_format::log;
+  if (n >= 8 && *parse<double>(first.front()) >= least_ns) return pose_format::euroc;
+  if (n == 8) return pose_format::tum;
+  if (n == 12) return pose_format::kitti;
+  if (n == 16) return pose_format::da3;
+  return std::nullopt;
+}
+
+inline std::optional<pose_format> format_of_text(std::string_view text,
+                                                 const std::filesystem::path& path) {
+  line_reader raw(text, path);
+  if (raw.next() && trim(raw.line()).starts_with("#name")) return pose_format::reality_capture;
+  if (raw.line().starts_with("#timestamp [ns]")) return pose_format::euroc;
+  line_reader lines(text, path);
+  std::vector<std::string_view> first;
+  std::vector<std::string_view> second;
+  if (lines.next_content()) split_loosely(lines.line(), first);
+  if (lines.next_content()) split_loosely(lines.line(), second);
+  return format_of_rows(first, second);
+}
+
+inline std::optional<pose_format> format_of_content(std::string_view text,
+                                                    const std::filesystem::path& path) {
+  if (text.starts_with("\x93NUMPY")) return pose_format::npy;
+  if (text.starts_with("PK\x03\x04")) return pose_format::npz;
+  std::string_view content = text;
+  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+  content = trim(content);
+  if (content.starts_with('{')) return pose_format::transforms;
+  if (content.starts_with('[')) return pose_format::opensfm;
+  if (content.starts_with('<')) return pose_format::metashape;
+  return format_of_text(text, path);
+}
+
+inline std::optional<pose_format> format_of_extension(const std::filesystem::path& path) {
+  constexpr std::array<std::pair<std::string_view, pose_format>, 6> extensions{
+      {{".tum", pose_format::tum},
+       {".kitti", pose_format::kitti},
+       {".log", pose_format::log},
+       {".npy", pose_format::npy},
+       {".npz", pose_format::npz},
+       {".xml", pose_format::metashape}}};
+  for (const auto& [extension, format] : extensions) {
+    if (path.extension() == extension) return format;
+  }
+  return std::nullopt;
+}
+
+}  // namespace detail
+
+inline pose_format detect_pose_format(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) {
+    if (const auto format = detail::format_of_folder(path)) return *format;
+    throw format_error(path,
+                       "a COLMAP model (cameras, images), camera_poses.txt, transforms.json or "
+                       "reconstruction.json expected in the folder, found none");
+  }
+  if (detail::is_colmap_file(path)) return pose_format::colmap;
+  constexpr std::size_t enough = 1 << 16;
+  const input_file file(path);
+  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), enough)), '\0');
+  file.read_at(0, begin.data(), begin.size());
+  if (const auto format = detail::format_of_content(begin, path)) return *format;
+  if (const auto format = detail::format_of_extension(path)) return *format;
+  std::string names;
+  for (const auto& known : pose_format_names)
+    names += message(names.empty() ? "" : ", ", known.name);
+  throw format_error(
+      path, message("the format of the poses cannot be told; give one as format: ", names));
+}
+
+}  // namespace aib::io
+
+// aib/io/reality_capture.hpp
+
+namespace aib::io {
+
+/// A RealityCapture csv file of internal and external camera parameters. Its columns are found by
+/// the names in the first line: `#name,x,y,alt,heading,pitch,roll,f,...`; angles are degrees.
+///
+/// size   of the images, which the file does not say: f (35 mm equivalent) becomes pixels with it.
+///        Where it is 0 there are no cameras.
+///
+/// Principal point and distortion are not taken over (their units are not documented): the cameras
+/// are pinholes with the centre of the image; a warning says so where they are not 0.
+/// Throws format_error for a missing column, a line of another length and a file without an image.
+[[nodiscard]] posed_images read_reality_capture(const std::filesystem::path& path,
+                                                const image_extent& size = {});
+
+namespace detail {
+
+/// The rows of a csv file with named columns.
+class csv_table {
+ public:
+  csv_table(std::string_view text, const std::filesystem::path& path) : lines_(text, path) {
+    if (!lines_.next()) throw format_error(path, "reality_capture: the file is empty");
+    std::string_view header = trim(lines_.line());
+    if (header.starts_with('#')) header.remove_prefix(1);
+    std::vector<std::string_view> names;
+    split(header, names, ',');
+    for (std::size_t i = 0; i < names.size(); ++i) columns_[std::string(names[i])] = i;
+  }
+
+  bool next() {
+    if (!lines_.next_content()) return false;
+    split(lines_.line(), fields_, ',');
+    if (fields_.size() != columns_.size()) {
+      lines_.fail(message("reality_capture: ", columns_.size(), " columns expected, found ",
+                          fields_.size()));
+    }
+    return true;
+  }
+  [[nodiscard]] bool has(const std::string& column) const { return columns_.contains(column); }
+  [[nodiscard]] std::string_view text(const std::string& column) const {
+    const auto found = columns_.find(column);
+    if (found == columns_.end())
+      lines_.fail(message("reality_capture: no column '", column, "' in the first line"));
+    return fields_[found->second];
+  }
+  [[nodiscard]] double number(const std::string& column) const {
+    const std::string_view field = text(column);
+    if (const auto value = parse<double>(field)) return *value;
+    lines_.fail(message("reality_capture: ", column, ": a number expected, found '", field, "'"));
+  }
+
+ private:
+  line_reader lines_;
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::string_view> fields_;
+};
+
+/// Orientation of a camera from its angles in degrees: heading clockwise from north, pitch, roll.
+inline Eigen::Matrix3d rotation_of_angles(double heading, double pitch, double roll) {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  return (AngleAxisd(-math::radians(heading), Vector3d::UnitZ()) *
+          AngleAxisd(math::radians(pitch), Vector3d::UnitX()) *
+          AngleAxisd(math::radians(roll), Vector3d::UnitY()))
+      .toRotationMatrix();
+}
+
+}  // namespace detail
+
+inline posed_images read_reality_capture(const std::filesystem::path& path,
+                                         const image_extent& size) {
+  constexpr std::array unused{"px", "py", "k1", "k2", "k3", "k4", "t1", "t2"};
+  constexpr double film_width_mm = 36;
+  const auto width = static_cast<double>(size.width);
+  const auto height = static_cast<double>(size.height);
+  const std::string content = read_file(path);
+  detail::csv_table table(content, path);
+  posed_images images;
+  bool left_out = false;
+  while (table.next()) {
+    pose_matrix matrix;
+    matrix.leftCols<3>() = detail::rotation_of_angles(table.number("heading"),
+                                                      table.number("pitch"), table.number("roll"));
+    matrix.col(3) << table.number("x"), table.number("y"), table.number("alt");
+    images.trajectory.names.emplace_back(table.text("name"));
+    images.trajectory.world_from_camera.push_back(
+        pose_from_matrix(matrix, {pose_convention::world_from_camera, camera_axes::opengl}));
+    if (size.width == 0 || !table.has("f")) continue;
+    const double f = table.number("f") * std::max(width, height) / film_width_mm;
+    images.cameras.push_back(math::pinhole(size.width, size.height, f, f, width / 2, height / 2));
+    for (const char* column : unused) left_out |= table.has(column) && table.number(column) != 0;
+  }
+  images.trajectory = checked_trajectory(std::move(images.trajectory), path, "reality_capture");
+  if (left_out) {
+    images.trajectory.warnings.push_back(
+        "principal points and distortion are left out of the intrinsics");
+  }
+  return images;
+}
+
+}  // namespace aib::io
+
+// aib/io/tanks_and_temples.hpp
+
+namespace aib::io {
+
+/// Poses of a Tanks and Temples .log file: for each frame a line of three whole numbers and the
+/// four rows of a matrix, world_from_camera. Record k is frame k, as the benchmark reads it.
+///
+/// A frame that the tools did not register is written as identity with -1 as the second number: it
+/// stays in its place, unregistered.
+/// Throws format_error where a record is cut off or is not a pose, and for a file without a pose.
+/// Source: Knapitsch et al., "Tanks and Temples", TOG 2017; TanksAndTemples
+/// python_toolbox/convert_to_logfile.py.
+[[nodiscard]] inline pose::trajectory read_tanks_and_temples(const std::filesystem::path& path,
+                                                             const pose_frame& frame = {}) {
+  const std::string text = read_file(path);
+  number_lines lines(text, path, "log");
+  pose::trajectory t;
+  while (lines.next()) {
+    lines.expect(3, "frame, frame, 0");
+    const bool lost = lines.numbers()[1] == -1;
+    std::vector<double> rows;
+    for (int r = 0; r < 4; ++r) {
+      if (!lines.next()) lines.fail("the file ends within a matrix");
+      lines.expect(4, "row of a 4 x 4 matrix");
+      rows.insert(rows.end(), lines.numbers().begin(), lines.numbers().end());
+    }
+    const pose_matrix matrix = detail::matrix_of_rows(rows);
+    const bool identity = matrix == pose_matrix::Identity();
+    t.world_from_camera.push_back(lost && identity ? unregistered_pose() : lines.checked([&] {
+      return pose_from_matrix(matrix, frame);
+    }));
+  }
+  return checked_trajectory(std::move(t), path, "log");
+}
+
+}  // namespace aib::io
+
+// aib/io/tum.hpp
+
+namespace aib::io {
+
+/// Where the scalar of a written quaternion stands.
+enum class quaternion_order {
+  xyzw,  ///< last: TUM
+  wxyz,  ///< first: what MonST3R and CUT3R write as pred_traj.txt
+};
+
+struct tum_options {
+  pose_frame frame = {};
+  quaternion_order quaternion = quaternion_order::xyzw;
+};
+
+/// Poses of a TUM RGB-D text file: `stamp tx ty tz qx qy qz qw` a line, world_from_camera, parted
+/// by blanks or commas. Quaternions are normalised; poses that are not finite stay, unregistered.
+///
+/// Throws format_error for a line without 8 numbers, a stamp that is not finite, a zero quaternion
+/// and a file without a pose.
+/// Source: Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012.
+[[nodiscard]] inline pose::trajectory read_tum(const std::filesystem::path& path,
+                                               const tum_options& options = {}) {
+  constexpr double normalised = 1e-2;
+  const bool w_first = options.quaternion == quaternion_order::wxyz;
+  const std::string text = read_file(path);
+  number_lines lines(text, path, "tum");
+  pose::trajectory t;
+  std::size_t not_unit = 0;
+  while (lines.next()) {
+    lines.expect(8, w_first ? "stamp tx ty tz qw qx qy qz" : "stamp tx ty tz qx qy qz qw");
+    const std::vector<double>& n = lines.numbers();
+    if (!std::isfinite(n[0])) lines.fail("the stamp is not finite");
+    const math::quaternion q = w_first ? math::quaternion{n[4], n[5], n[6], n[7]}
+                                       : math::quaternion{n[7], n[4], n[5], n[6]};
+    const double norm = std::hypot(std::hypot(q.w, q.x), std::hypot(q.y, q.z));
+    not_unit += std::abs(norm - 1) > normalised ? 1 : 0;
+    t.stamps_s.push_back(n[0]);
+    t.world_from_camera.push_back(lines.checked([&] {
+      return pose_from_quaternion(q, {n[1], n[2], n[3]}, options.frame);
+    }));
+  }
+  if (not_unit > 0)
+    t.warnings.push_back(message(not_unit, " quaternions are not of length 1: normalised"));
+  return checked_trajectory(std::move(t), path, "tum");
+}
+
+/// Writes the registered poses as a TUM file, numbers in their shortest exact form. A trajectory
+/// without stamps gets its indices. Throws argument_error where no pose is registered.
+inline void write_tum(const std::filesystem::path& path,
+                      const pose::trajectory& t,
+                      const tum_options& options = {}) {
+  pose::check(t);
+  std::string text;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (!t.world_from_camera[i].is_finite()) continue;
+    const math::rigid3 pose = pose_in_frame(t.world_from_camera[i], options.frame);
+    const math::quaternion q = math::quaternion_from(pose.rotation);
+    const Eigen::Vector3d& p = pose.translation;
+    const double stamp = t.stamps_s.empty() ? static_cast<double>(i) : t.stamps_s[i];
+    text += message(stamp, ' ', p.x(), ' ', p.y(), ' ', p.z(), ' ');
+    text += options.quaternion == quaternion_order::wxyz
+                ? message(q.w, ' ', q.x, ' ', q.y, ' ', q.z, '\n')
+                : message(q.x, ' ', q.y, ' ', q.z, ' ', q.w, '\n');
+  }
+  if (text.empty()) throw argument_error("write_tum: no registered pose to write");
+  write_file(path, text);
+}
+
+}  // namespace aib::io
+
+// aib/io/json.hpp
+
+#if defined(AIB_WITH_JSON)
+#include <nlohmann/json.hpp>
+
+namespace aib::io {
+
+/// A JSON value that knows its place in its file: whatever is missing or of the wrong kind is
+/// refused with the file and the place ("frames[3].transform_matrix"). Borrows the value and path.
+class json_node {
+ public:
+  json_node(const nlohmann::json& value, const std::filesystem::path& path, std::string place = {})
+      : value_(&value), path_(&path), place_(std::move(place)) {}
+
+  [[nodiscard]] bool is_object() const { return value_->is_object(); }
+  [[nodiscard]] bool is_array() const { return value_->is_array(); }
+  [[nodiscard]] bool is_number() const { return value_->is_number(); }
+
+  /// The member of an object, nothing where there is none or it is null.
+  [[nodiscard]] std::optional<json_node> find(const std::string& key) const {
+    if (!value_->is_object()) fail(message("an object expected, found ", kind()));
+    const auto member = value_->find(key);
+    if (member == value_->end() || member->is_null()) return std::nullopt;
+    return json_node(*member, *path_, place_.empty() ? key : message(place_, '.', key));
+  }
+  [[nodiscard]] json_node operator[](const std::string& key) const {
+    if (auto member = find(key)) return std::move(*member);
+    fail(message("'", key, "' expected, found none"));
+  }
+
+  /// Length and elements of an array.
+  [[nodiscard]] std::size_t size() const {
+    if (!value_->is_array()) fail(message("an array expected, found ", kind()));
+    return value_->size();
+  }
+  [[nodiscard]] json_node operator[](std::size_t i) const {
+    if (i >= size()) fail(message("at least ", i + 1, " elements expected, found ", size()));
+    return {(*value_)[i], *path_, message(place_, '[', i, ']')};
+  }
+
+  /// Calls `visit(key, node)` for the members of an object, in the order of their keys.
+  template <class Visit>
+  void for_each_member(Visit&& visit) const {
+    if (!value_->is_object()) fail(message("an object expected, found ", kind()));
+    for (auto member = value_->begin(); member != value_->end(); ++member)
+      visit(member.key(), json_node(*member, *path_, message(place_, '.', member.key())));
+  }
+
+  [[nodiscard]] double number() const {
+    if (!value_->is_number()) fail(message("a number expected, found ", kind()));
+    return value_->get<double>();
+  }
+  [[nodiscard]] std::string text() const {
+    if (!value_->is_string()) fail(message("a text expected, found ", kind()));
+    return value_->get<std::string>();
+  }
+  /// The number of a member, or `otherwise` where there is none.
+  [[nodiscard]] double number(const std::string& key, double otherwise) const {
+    const auto member = find(key);
+    return member ? member->number() : otherwise;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(*path_, message(place_, place_.empty() ? "" : ": ", what));
+  }
+
+ private:
+  [[nodiscard]] std::string_view kind() const { return value_->type_name(); }
+
+  const nlohmann::json* value_;
+  const std::filesystem::path* path_;
+  std::string place_;
+};
+
+/// The content of a JSON file. Throws format_error where it is not JSON.
+///
+/// keep   called as keep(key) for each member of an object; where it says no the member's value is
+///        dropped as it is read, so that large parts need no memory
+template <class Keep>
+[[nodiscard]] nlohmann::json read_json(const std::filesystem::path& path, Keep&& keep) {
+  using json = nlohmann::json;
+  const std::string text = read_file(path);
+  const auto callback = [&](int, json::parse_event_t event, json& parsed) {
+    return event != json::parse_event_t::key || keep(parsed.get_ref<const std::string&>());
+  };
+  try {
+    return json::parse(text, callback);
+  } catch (const json::parse_error& e) {
+    const std::string_view what = e.what();
+    const std::size_t end_of_id = what.find("] ");
+    throw format_error(
+        path, at_byte{e.byte},
+        message("json: ", end_of_id == std::string_view::npos ? what : what.substr(end_of_id + 2)));
+  } catch (const json::exception& e) {
+    throw format_error(path, message("json: ", e.what()));
+  }
+}
+
+[[nodiscard]] inline nlohmann::json read_json(const std::filesystem::path& path) {
+  return read_json(path, [](const std::string&) { return true; });
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/opensfm.hpp
+
+#if defined(AIB_WITH_JSON)
+namespace aib::io {
+
+/// The components of an OpenSfM or OpenDroneMap reconstruction.json, in the order of the file; the
+/// shots of each sorted by name. Points are not read.
+///
+/// Cameras are empty where a shot's camera has a projection that COLMAP has not; a warning says so.
+/// Throws format_error where it is not such a file or has no shot.
+/// Source: OpenSfM, opensfm/io.py, doc/source/reporting.rst.
+[[nodiscard]] std::vector<posed_images> read_opensfm_components(const std::filesystem::path& path);
+
+/// The component with the most shots (of equals the first); a warning counts the others.
+[[nodiscard]] posed_images read_opensfm(const std::filesystem::path& path);
+
+namespace detail {
+
+/// OpenSfM's camera with COLMAP's parameters. Lengths are written in units of the longer side, from
+/// the image's centre.
+inline std::optional<math::camera> opensfm_camera(const json_node& j) {
+  using math::camera_model;
+  const double width = j["width"].number();
+  const double height = j["height"].number();
+  if (!(width >= 1 && height >= 1 && width < 1e9 && height < 1e9))
+    j.fail("width and height of 1 or more pixels expected");
+  const double side = std::max(width, height);
+  const double f = side * j.number("focal", 0);
+  const double fx = side * j.number("focal_x", f / side);
+  const double fy = side * j.number("focal_y", fx / side);
+  const double cx = width / 2 + side * j.number("c_x", 0);
+  const double cy = height / 2 + side * j.number("c_y", 0);
+  const auto d = [&](const char* key) { return j.number(key, 0); };
+  const auto of = [&](camera_model model, std::vector<double> parameters) {
+    return math::camera{model, static_cast<std::uint64_t>(width),
+                        static_cast<std::uint64_t>(height), std::move(parameters)};
+  };
+  const std::string type = j["projection_type"].text();
+  if (type == "perspective") return of(camera_model::radial, {f, cx, cy, d("k1"), d("k2")});
+  if (type == "fisheye") return of(camera_model::radial_fisheye, {f, cx, cy, d("k1"), d("k2")});
+  if (type == "spherical" || type == "equirectangular")
+    return of(camera_model::equirectangular, {width, height});
+  if (type == "simple_radial" || type == "radial")
+    return of(camera_model::opencv, {fx, fy, cx, cy, d("k1"), d("k2"), 0, 0});
+  if (type == "brown") {
+    return of(camera_model::full_opencv,
+              {fx, fy, cx, cy, d("k1"), d("k2"), d("p1"), d("p2"), d("k3"), 0, 0, 0});
+  }
+  if (type == "fisheye_opencv") {
+    return of(camera_model::opencv_fisheye, {fx, fy, cx, cy, d("k1"), d("k2"), d("k3"), d("k4")});
+  }
+  return std::nullopt;
+}
+
+inline Eigen::Vector3d read_json_vector(const json_node& j) {
+  if (j.size() != 3) j.fail(message("3 numbers expected, found ", j.size()));
+  return {j[0].number(), j[1].number(), j[2].number()};
+}
+
+inline posed_images opensfm_component(const json_node& component,
+                                      const std::filesystem::path& path) {
+  std::map<std::string, std::optional<math::camera>> cameras;
+  component["cameras"].for_each_member([&](const std::string& name, const json_node& camera) {
+    cameras[name] = opensfm_camera(camera);
+  });
+  posed_images images;
+  component["shots"].for_each_member([&](const std::string& name, const json_node& shot) {
+    const Eigen::Matrix3d rotation = math::rotation_from(read_json_vector(shot["rotation"]));
+    const math::rigid3 camera_from_world{rotation, read_json_vector(shot["translation"])};
+    images.trajectory.names.push_back(name);
+    images.trajectory.world_from_camera.push_back(camera_from_world.inverse());
+    const std::string camera_name = shot["camera"].text();
+    const auto camera = cameras.find(camera_name);
+    if (camera == cameras.end()) shot.fail(message("no camera '", camera_name, "' in the file"));
+    if (camera->second) images.cameras.push_back(*camera->second);
+  });
+  images.trajectory = checked_trajectory(std::move(images.trajectory), path, "opensfm");
+  if (images.cameras.size() != images.trajectory.size()) {
+    images.trajectory.warnings.push_back("a projection is not known: no intrinsics are given");
+    images.cameras.clear();
+  }
+  return images;
+}
+
+}  // namespace detail
+
+inline std::vector<posed_images> read_opensfm_components(const std::filesystem::path& path) {
+  const nlohmann::json content =
+      read_json(path, [](const std::string& key) { return key != "points"; });
+  const json_node file(content, path);
+  std::vector<posed_images> components;
+  for (std::size_t i = 0; i < file.size(); ++i)
+    components.push_back(detail::opensfm_component(file[i], path));
+  if (components.empty()) throw format_error(path, "opensfm: no reconstruction in the file");
+  return components;
+}
+
+inline posed_images read_opensfm(const std::filesystem::path& path) {
+  std::vector<posed_images> components = read_opensfm_components(path);
+  const auto largest = std::max_element(components.begin(), components.end(),
+                                        [](const posed_images& a, const posed_images& b) {
+                                          return a.trajectory.size() < b.trajectory.size();
+                                        });
+  posed_images images = std::move(*largest);
+  if (components.size() > 1) {
+    images.trajectory.warnings.push_back(message("component ", largest - components.begin(), " of ",
+                                                 components.size(), " is read (",
+                                                 images.trajectory.size(), " images)"));
+  }
+  return images;
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/transforms.hpp
+
+#if defined(AIB_WITH_JSON)
+namespace aib::io {
+
+struct transforms_options {
+  pose_frame frame = {pose_convention::world_from_camera, camera_axes::opengl};
+  image_extent size = {};
+};
+
+/// A transforms.json of NeRF (camera_angle_x) or nerfstudio (fl_x ..., shared or per frame): poses
+/// in the order of the frames, named by `file_path` without a leading "./".
+///
+/// nerfstudio's `applied_transform` is part of the written poses and stays so. Cameras are empty
+/// where the file tells no focal length (an angle needs a width) or has a camera model that COLMAP
+/// has not; a warning says so.
+///
+/// Throws format_error where it is not JSON, has no frames, or a frame without a 4 x 4 or 3 x 4
+/// transform_matrix.
+[[nodiscard]] posed_images read_transforms(const std::filesystem::path& path,
+                                           const transforms_options& options = {});
+
+/// Writes a nerfstudio transforms.json: OpenGL axes, intrinsics per frame where there are cameras.
+/// Poses that are not registered are left out. Throws argument_error where names or cameras do not
+/// fit the poses, no pose is registered or a camera has a model that nerfstudio has not.
+void write_transforms(const std::filesystem::path& path, const posed_images& images);
+
+namespace detail {
+
+inline pose_matrix read_transform_matrix(const json_node& rows) {
+  if (rows.size() != 4 && rows.size() != 3)
+    rows.fail(message("4 or 3 rows expected, found ", rows.size()));
+  pose_matrix matrix;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const json_node row = rows[r];
+    if (row.size() != 4) row.fail(message("4 numbers expected, found ", row.size()));
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double number = row[c].number();
+      if (r < 3) matrix(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = number;
+      if (r == 3 && number != (c == 3 ? 1 : 0)) row.fail("0 0 0 1 expected in the last row");
+    }
+  }
+  return matrix;
+}
+
+/// Intrinsics of a frame: its own members, else those of the file.
+class transforms_intrinsics {
+ public:
+  transforms_intrinsics(const json_node& frame,
+                        const json_node& file,
+                        const transforms_options& options)
+      : frame_(frame), file_(file) {
+    width_ = number("w").value_or(static_cast<double>(options.size.width));
+    height_ = number("h").value_or(static_cast<double>(options.size.height));
+  }
+
+  /// Nothing where the focal length or the model is not known.
+  [[nodiscard]] std::optional<math::camera> camera() const {
+    using math::camera_model;
+    const std::string model = model_name();
+    if (model == "EQUIRECTANGULAR") return of(camera_model::equirectangular, {width_, height_});
+    const auto fx = focal("fl_x", "camera_angle_x", width_);
+    if (!fx) return std::nullopt;
+    const double fy = focal("fl_y", "camera_angle_y", height_).value_or(*fx);
+    const double cx = number("cx").value_or(width_ / 2);
+    const double cy = number("cy").value_or(height_ / 2);
+    const auto k = [&](const char* key) { return number(key).value_or(0); };
+    if (model == "OPENCV_FISHEYE") {
+      return of(camera_model::opencv_fisheye,
+                {*fx, fy, cx, cy, k("k1"), k("k2"), k("k3"), k("k4")});
+    }
+    const bool perspective =
+        model.empty() || model == "OPENCV" || model == "PINHOLE" || model == "SIMPLE_PINHOLE";
+    if (!perspective || k("k4") != 0) return std::nullopt;
+    if (k("k3") != 0) {
+      return of(camera_model::full_opencv,
+                {*fx, fy, cx, cy, k("k1"), k("k2"), k("p1"), k("p2"), k("k3"), 0, 0, 0});
+    }
+    if (k("k1") != 0 || k("k2") != 0 || k("p1") != 0 || k("p2") != 0)
+      return of(camera_model::opencv, {*fx, fy, cx, cy, k("k1"), k("k2"), k("p1"), k("p2")});
+    return of(camera_model::pinhole, {*fx, fy, cx, cy});
+  }
+
+ private:
+  [[nodiscard]] std::optional<double> number(const std::string& key) const {
+    auto member = frame_.find(key);
+    if (!member) member = file_.find(key);
+    if (!member) return std::nullopt;
+    return member->number();
+  }
+
+  [[nodiscard]] std::string model_name() const {
+    auto member = frame_.find("camera_model");
+    if (!member) member = file_.find("camera_model");
+    return member ? member->text() : std::string();
+  }
+
+  [[nodiscard]] std::optional<double> focal(const char* key,
+                                            const char* angle_key,
+                                            double extent) const {
+    if (const auto f = number(key)) return f;
+    const auto angle = number(angle_key);
+    if (!angle || !(extent > 0)) return std::nullopt;
+    return extent / 2 / std::tan(*angle / 2);
+  }
+
+  [[nodiscard]] math::camera of(math::camera_model model, std::vector<double> parameters) const {
+    const auto pixels = [&](double extent) {
+      if (!(extent >= 0 && extent < 1e9)) frame_.fail("w and h between 0 and 1e9 expected");
+      return static_cast<std::uint64_t>(extent);
+    };
+    return {model, pixels(width_), pixels(height_), std::move(parameters)};
+  }
+
+  const json_node& frame_;
+  const json_node& file_;
+  double width_ = 0;
+  double height_ = 0;
+};
+
+inline nlohmann::ordered_json json_of_camera(const math::camera& c) {
+  using math::camera_model;
+  static constexpr std::array names{"k1", "k2", "p1", "p2"};
+  static constexpr std::array fisheye_names{"k1", "k2", "k3", "k4"};
+  nlohmann::ordered_json j;
+  const bool fisheye = c.model == camera_model::opencv_fisheye;
+  const bool distorted = fisheye || c.model == camera_model::opencv;
+  if (!distorted && c.model != camera_model::pinhole && c.model != camera_model::simple_pinhole) {
+    throw argument_error(message("write_transforms: camera model ", math::info(c.model).name,
+                                 " is not one of SIMPLE_PINHOLE, PINHOLE, OPENCV, OPENCV_FISHEYE"));
+  }
+  j["camera_model"] = fisheye ? "OPENCV_FISHEYE" : "OPENCV";
+  j["w"] = c.width;
+  j["h"] = c.height;
+  j["fl_x"] = c.fx();
+  j["fl_y"] = c.fy();
+  j["cx"] = c.cx();
+  j["cy"] = c.cy();
+  for (std::size_t i = 0; distorted && i < 4; ++i)
+    j[fisheye ? fisheye_names[i] : names[i]] = c.parameters.at(4 + i);
+  return j;
+}
+
+}  // namespace detail
+
+inline posed_images read_transforms(const std::filesystem::path& path,
+                                    const transforms_options& options) {
+  const nlohmann::json content = read_json(path);
+  const json_node file(content, path, "");
+  const json_node frames = file["frames"];
+  posed_images images;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const json_node frame = frames[i];
+    std::string name = frame["file_path"].text();
+    if (name.starts_with("./")) name.erase(0, 2);
+    images.trajectory.names.push_back(std::move(name));
+    const json_node matrix = frame["transform_matrix"];
+    try {
+      images.trajectory.world_from_camera.push_back(
+          pose_from_matrix(detail::read_transform_matrix(matrix), options.frame));
+    } catch (const argument_error& e) {
+      matrix.fail(e.what());
+    }
+    if (auto camera = detail::transforms_intrinsics(frame, file, options).camera())
+      images.cameras.push_back(std::move(*camera));
+  }
+  images.trajectory = checked_trajectory(std::move(images.trajectory), path, "transforms");
+  if (images.cameras.size() != images.trajectory.size()) {
+    images.trajectory.warnings.push_back(message("intrinsics are known for ", images.cameras.size(),
+                                                 " of ", images.trajectory.size(),
+                                                 " frames: none are given"));
+    images.cameras.clear();
+  }
+  return images;
+}
+
+inline void write_transforms(const std::filesystem::path& path, const posed_images& images) {
+  const pose::trajectory& t = images.trajectory;
+  pose::check(t);
+  if (t.names.empty()) throw argument_error("write_transforms: the poses need names");
+  if (!images.cameras.empty() && images.cameras.size() != t.size()) {
+    throw argument_error(
+        message("write_transforms: ", images.cameras.size(), " cameras for ", t.size(), " poses"));
+  }
+  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (!t.world_from_camera[i].is_finite()) continue;
+    nlohmann::ordered_json frame;
+    frame["file_path"] = t.names[i];
+    if (!images.cameras.empty()) frame.update(detail::json_of_camera(images.cameras[i]));
+    const Eigen::Matrix4d m =
+        pose_in_frame(t.world_from_camera[i], transforms_options{}.frame).matrix();
+    for (Eigen::Index r = 0; r < 4; ++r)
+      frame["transform_matrix"].push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
+    frames.push_back(std::move(frame));
+  }
+  if (frames.empty()) throw argument_error("write_transforms: no registered pose to write");
+  nlohmann::ordered_json file;
+  file["frames"] = std::move(frames);
+  write_file(path, file.dump(1) + "\n");
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/npz.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+#include <zlib.h>
+
+namespace aib::io {
+
+struct npz_options {
+  /// A member that inflates to more than `max_ratio` times its stored size is refused where it
+  /// needs more than `max_bytes`: arrays hardly compress so well, bombs do.
+  double max_ratio = 100;
+  std::uint64_t max_bytes = std::uint64_t{1} << 30;
+};
+
+/// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
+/// come from the central directory, contents are checked against their CRC-32. Members are read
+/// when asked for.
+///
+/// Needs zlib.
+/// Source: PKWARE, APPNOTE.TXT 6.3.10; numpy.savez.
+class npz_file {
+ public:
+  /// Throws io_error where the file cannot be opened, format_error where it is not a zip.
+  explicit npz_file(const std::filesystem::path& path, const npz_options& options = {});
+
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+
+  /// Names of the arrays, without ".npy", in the order of the file.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
+
+  /// Reads an array. Throws argument_error where there is none of that name, format_error where it
+  /// is damaged, encrypted, of another compression, or pickled.
+  [[nodiscard]] array read(std::string_view name) const;
+
+  /// Shape and type from the array's header alone.
+  /// Throws as read does.
+  [[nodiscard]] array read_header(std::string_view name) const;
+
+  /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
+  [[nodiscard]] bool is_unreadable(std::string_view name) const;
+
+ private:
+  struct member {
+    std::string name;
+    std::uint64_t offset = 0;  ///< of the local header
+    std::uint64_t packed = 0;
+    std::uint64_t size = 0;
+    std::uint32_t crc = 0;
+    std::uint16_t method = 0;
+    bool encrypted = false;
+  };
+  struct directory {
+    std::uint64_t offset;
+    std::uint64_t bytes;
+    std::uint64_t members;
+  };
+
+  [[nodiscard]] std::string part(std::uint64_t offset, std::uint64_t n) const;
+  [[nodiscard]] directory find_directory() const;
+  [[nodiscard]] directory find_directory64(std::uint64_t end) const;
+  [[nodiscard]] static member read_entry(byte_reader& in);
+  static void read_zip64(std::string_view extra,
+                         member& m,
+                         std::uint32_t packed,
+                         std::uint32_t size,
+                         std::uint32_t offset,
+                         byte_reader& in);
+  [[nodiscard]] const member* find(std::string_view name) const;
+  [[nodiscard]] const member& get(std::string_view name) const;
+  [[nodiscard]] std::uint64_t data_offset(const member& m) const;
+  /// The first `n` bytes of a member's content.
+  [[nodiscard]] std::string content(const member& m, std::uint64_t n) const;
+  [[nodiscard]] std::string inflated(const member& m, std::uint64_t n) const;
+  [[noreturn]] void fail(const member& m, std::string_view what) const;
+
+  input_file file_;
+  npz_options options_;
+  std::vector<member> members_;
+};
+
+/// All arrays of an NPZ file by name are too much at once as a rule; this reads one.
+[[nodiscard]] inline array read_npz(const std::filesystem::path& path, std::string_view name) {
+  return npz_file(path).read(name);
+}
+
+namespace detail {
+
+inline constexpr std::uint32_t zip_local = 0x04034b50;
+inline constexpr std::uint32_t zip_central = 0x02014b50;
+inline constexpr std::uint32_t zip_end = 0x06054b50;
+inline constexpr std::uint32_t zip64_end = 0x06064b50;
+inline constexpr std::uint32_t zip64_locator = 0x07064b50;
+inline constexpr std::uint32_t in_zip64 = 0xffffffff;  ///< the true number is in the extra field
+
+/// Inflates raw deflate data block by block.
+class inflater {
+ public:
+  inflater() { ready_ = ::inflateInit2(&stream_, -MAX_WBITS) == Z_OK; }
+  inflater(const inflater&) = delete;
+  inflater& operator=(const inflater&) = delete;
+  ~inflater() { ::inflateEnd(&stream_); }
+
+  void input(std::string_view packed) {
+    stream_.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
+    stream_.avail_in = static_cast<uInt>(packed.size());
+  }
+  /// Fills `out` from `from` on as far as the input goes; false where the data is damaged.
+  bool fill(std::string& out, std::size_t& from) {
+    while (ready_ && !ended_ && from < out.size()) {
+      const std::size_t room = std::min<std::size_t>(out.size() - from, 1u << 30);
+      stream_.next_out = reinterpret_cast<Bytef*>(out.data() + from);
+      stream_.avail_out = static_cast<uInt>(room);
+      const int code = ::inflate(&stream_, Z_NO_FLUSH);
+      from += room - stream_.avail_out;
+      ended_ = code == Z_STREAM_END;
+      if (code == Z_BUF_ERROR || (code == Z_OK && stream_.avail_in == 0)) return true;
+      if (code != Z_OK && code != Z_STREAM_END) return false;
+    }
+    return ready_;
+  }
+
+ private:
+  z_stream stream_ = {};
+  bool ready_ = false;
+  bool ended_ = false;
+};
+
+inline std::uint32_t crc32_of(std::string_view bytes) {
+  uLong crc = ::crc32(0, nullptr, 0);
+  while (!bytes.empty()) {
+    const std::size_t n = std::min<std::size_t>(bytes.size(), 1u << 30);
+    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(n));
+    bytes.remove_prefix(n);
+  }
+  return static_cast<std::uint32_t>(crc);
+}
+
+}  // namespace detail
+
+inline npz_file::npz_file(const std::filesystem::path& path, const npz_options& options)
+    : file_(path), options_(options) {
+  const directory d = find_directory();
+  const std::string bytes = part(d.offset, d.bytes);
+  byte_reader in(bytes, path);
+  constexpr std::size_t entry_bytes = 46;
+  if (d.members > bytes.size() / entry_bytes)
+    throw format_error(path, message("npz: ", d.members, " members do not fit in the directory"));
+  for (std::uint64_t i = 0; i < d.members; ++i) {
+    member m = read_entry(in);
+    if (!m.name.ends_with(".npy")) continue;
+    m.name.resize(m.name.size() - 4);
+    members_.push_back(std::move(m));
+  }
+}
+
+inline std::vector<std::string> npz_file::names() const {
+  std::vector<std::string> names;
+  for (const member& m : members_) names.push_back(m.name);
+  return names;
+}
+
+inline array npz_file::read(std::string_view name) const {
+  const member& m = get(name);
+  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
+  std::string bytes = content(m, m.size);
+  if (detail::crc32_of(bytes) != m.crc) fail(m, "the content does not fit its checksum");
+  return parse_npy(std::move(bytes), inside);
+}
+
+inline array npz_file::read_header(std::string_view name) const {
+  const member& m = get(name);
+  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
+  const auto preamble =
+      detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
+  const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
+  detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
+  return {header.type, std::move(header.shape), {}};
+}
+
+inline bool npz_file::is_unreadable(std::string_view name) const {
+  try {
+    static_cast<void>(read_header(name));
+    return false;
+  } catch (const format_error&) {
+    return true;
+  }
+}
+
+inline std::string npz_file::part(std::uint64_t offset, std::uint64_t n) const {
+  if (offset > file_.size() || n > file_.size() - offset) {
+    throw format_error(path(), message("npz: bytes ", offset, " to ", offset + n,
+                                       " expected, the file has ", file_.size()));
+  }
+  std::string bytes(static_cast<std::size_t>(n), '\0');
+  file_.read_at(offset, bytes.data(), bytes.size());
+  return bytes;
+}
+
+inline npz_file::directory npz_file::find_directory() const {
+  constexpr std::uint64_t end_bytes = 22;
+  constexpr std::uint64_t max_comment = 65535;
+  const std::uint64_t tail = std::min(file_.size(), end_bytes + max_comment);
+  const std::uint64_t begin = file_.size() - tail;
+  const std::string bytes = part(begin, tail);
+  const std::size_t at = bytes.rfind("PK\x05\x06");
+  if (at == std::string::npos || tail - at < end_bytes)
+    throw format_error(path(), "npz: not a zip file, or cut off: no end of the central directory");
+  byte_reader in(std::string_view(bytes).substr(at + 8), path());
+  in.read<std::uint16_t>("npz: members");
+  const auto members = in.read<std::uint16_t>("npz: members");
+  const auto size = in.read<std::uint32_t>("npz: directory size");
+  const auto offset = in.read<std::uint32_t>("npz: directory offset");
+  if (members == 0xffff || size == detail::in_zip64 || offset == detail::in_zip64)
+    return find_directory64(begin + at);
+  return {offset, size, members};
+}
+
+inline npz_file::directory npz_file::find_directory64(std::uint64_t end) const {
+  constexpr std::uint64_t locator_bytes = 20;
+  if (end < locator_bytes) throw format_error(path(), "npz: zip64 locator expected");
+  const std::string bytes = part(end - locator_bytes, locator_bytes);
+  byte_reader locator(bytes, path());
+  if (locator.read<std::uint32_t>("npz: zip64 locator") != detail::zip64_locator)
+    throw format_error(path(), at_byte{end - locator_bytes}, "npz: zip64 locator expected");
+  locator.read<std::uint32_t>("npz: disk");
+  const auto at = locator.read<std::uint64_t>("npz: zip64 end");
+  const std::string record = part(at, 56);
+  byte_reader in(record, path());
+  if (in.read<std::uint32_t>("npz: zip64 end") != detail::zip64_end)
+    throw format_error(path(), at_byte{at}, "npz: zip64 end of the central directory expected");
+  in.take(28, "npz: zip64 end");
+  const auto members = in.read<std::uint64_t>("npz: members");
+  const auto size = in.read<std::uint64_t>("npz: directory size");
+  return {in.read<std::uint64_t>("npz: directory offset"), size, members};
+}
+
+inline npz_file::member npz_file::read_entry(byte_reader& in) {
+  if (in.read<std::uint32_t>("npz: entry") != detail::zip_central)
+    in.fail("npz: an entry of the central directory expected");
+  member m;
+  in.take(4, "npz: versions");
+  m.encrypted = (in.read<std::uint16_t>("npz: flags") & 1) != 0;
+  m.method = in.read<std::uint16_t>("npz: method");
+  in.take(4, "npz: time");
+  m.crc = in.read<std::uint32_t>("npz: checksum");
+  const auto packed = in.read<std::uint32_t>("npz: packed size");
+  const auto size = in.read<std::uint32_t>("npz: size");
+  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
+  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
+  const auto comment_bytes = in.read<std::uint16_t>("npz: comment length");
+  in.take(8, "npz: attributes");
+  const auto offset = in.read<std::uint32_t>("npz: offset");
+  m.name = in.take(name_bytes, "npz: name");
+  read_zip64(in.take(extra_bytes, "npz: extra field"), m, packed, size, offset, in);
+  in.take(comment_bytes, "npz: comment");
+  return m;
+}
+
+inline void npz_file::read_zip64(std::string_view extra,
+                                 member& m,
+                                 std::uint32_t packed,
+                                 std::uint32_t size,
+                                 std::uint32_t offset,
+                                 byte_reader& in) {
+  m.packed = packed;
+  m.size = size;
+  m.offset = offset;
+  while (extra.size() >= 4) {
+    const auto id = load<std::uint16_t>(extra.data());
+    const auto bytes = load<std::uint16_t>(extra.data() + 2);
+    std::string_view field = extra.substr(4, bytes);
+    extra.remove_prefix(std::min<std::size_t>(extra.size(), 4u + bytes));
+    if (id != 1) continue;
+    for (auto* value : {size == detail::in_zip64 ? &m.size : nullptr,
+                        packed == detail::in_zip64 ? &m.packed : nullptr,
+                        offset == detail::in_zip64 ? &m.offset : nullptr}) {
+      if (value == nullptr) continue;
+      if (field.size() < 8) in.fail("npz: the zip64 extra field is too short");
+      *value = load<std::uint64_t>(field.data());
+      field.remove_prefix(8);
+    }
+  }
+}
+
+inline const npz_file::member* npz_file::find(std::string_view name) const {
+  const auto m = std::find_if(members_.begin(), members_.end(),
+                              [&](const member& one) { return one.name == name; });
+  return m == members_.end() ? nullptr : &*m;
+}
+
+inline const npz_file::member& npz_file::get(std::string_view name) const {
+  if (const member* m = find(name)) return *m;
+  std::string known;
+  for (const member& m : members_) known += message(known.empty() ? "" : ", ", m.name);
+  throw argument_error(
+      message(path().string(), ": npz: no array '", name, "'; there are: ", known));
+}
+
+inline std::uint64_t npz_file::data_offset(const member& m) const {
+  constexpr std::uint64_t local_bytes = 30;
+  const std::string bytes = part(m.offset, local_bytes);
+  byte_reader in(bytes, path());
+  if (in.read<std::uint32_t>("npz: local header") != detail::zip_local)
+    fail(m, message("no local header at byte ", m.offset));
+  in.take(22, "npz: local header");
+  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
+  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
+  return m.offset + local_bytes + name_bytes + extra_bytes;
+}
+
+inline std::string npz_file::content(const member& m, std::uint64_t n) const {
+  constexpr std::uint16_t stored = 0;
+  constexpr std::uint16_t deflated = 8;
+  if (m.encrypted) fail(m, "encrypted");
+  if (m.method == deflated) return inflated(m, n);
+  if (m.method != stored)
+    fail(m, message("compression method ", m.method, " is not supported; 0 and 8 are"));
+  if (m.packed != m.size) fail(m, "stored, but of two sizes");
+  return part(data_offset(m), n);
+}
+
+inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
+  constexpr std::uint64_t best_ratio = 1032;  // of deflate
+  const std::uint64_t begin = data_offset(m);
+  if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
+  const double ratio = static_cast<double>(m.size) / static_cast<double>(m.packed + 1);
+  if (m.size / best_ratio > m.packed ||
+      (ratio > options_.max_ratio && m.size > options_.max_bytes)) {
+    fail(m, message("inflates from ", m.packed, " to ", m.size, " bytes, which no array does"));
+  }
+  std::string out(static_cast<std::size_t>(n), '\0');
+  std::size_t filled = 0;
+  detail::inflater inflate;
+  constexpr std::uint64_t block_bytes = std::uint64_t{1} << 20;
+  for (std::uint64_t at = 0; at < m.packed && filled < out.size();) {
+    const std::string block = part(begin + at, std::min(block_bytes, m.packed - at));
+    inflate.input(block);
+    if (!inflate.fill(out, filled)) fail(m, "the deflated data is damaged");
+    at += block.size();
+  }
+  if (filled < out.size())
+    fail(m, message(out.size(), " bytes expected, the deflated data holds ", filled));
+  return out;
+}
+
+inline void npz_file::fail(const member& m, std::string_view what) const {
+  throw format_error(path(), message("npz: '", m.name, "': ", what));
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/pose_npz.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::io {
+
+struct pose_npz_options {
+  std::string key = {};  ///< array of the poses; empty: the first of `pose_keys` that is there
+  std::optional<pose_convention> convention = {};  ///< needed where `key` is not of `pose_keys`
+  camera_axes axes = camera_axes::opencv;
+};
+
+/// An array name by which a method is known to save poses, and what it means.
+struct pose_key {
+  std::string_view name;
+  pose_convention convention;
+};
+
+inline constexpr std::array<pose_key, 8> pose_keys{{
+    {"extrinsics", pose_convention::camera_from_world},    // Depth Anything 3
+    {"exts", pose_convention::camera_from_world},          // Depth Anything 3, its documentation
+    {"extrinsic", pose_convention::camera_from_world},     // VGGT
+    {"camera_poses", pose_convention::world_from_camera},  // pi3
+    {"cam_c2w", pose_convention::world_from_camera},       // MegaSaM
+    {"pose", pose_convention::world_from_camera},          // CUT3R
+    {"c2w", pose_convention::world_from_camera},
+    {"w2c", pose_convention::camera_from_world},
+}};
+
+/// Poses and, where they are there, intrinsics (`intrinsics`, `ixts`, `intrinsic`, `K`) of an NPZ
+/// file. The images' size is that of `depth` or of the point map; 0 where there is neither.
+///
+/// Intrinsics whose principal point lies at the far side of the depth map belong to the images'
+/// original size (a race in Depth Anything 3's export): they are scaled to the depth map, and a
+/// warning says so.
+/// Throws argument_error where no array of poses is found or its convention is not known.
+[[nodiscard]] posed_images read_pose_npz(const std::filesystem::path& path,
+                                         const pose_npz_options& options = {});
+
+namespace detail {
+
+inline pose_key find_pose_key(const npz_file& file, const pose_npz_options& options) {
+  for (const pose_key& known : pose_keys) {
+    if (options.key.empty() ? file.contains(known.name) : options.key == known.name) return known;
+  }
+  if (options.key.empty()) {
+    std::string names;
+    for (const std::string& name : file.names()) names += message(names.empty() ? "" : ", ", name);
+    throw argument_error(
+        message(file.path().string(),
+                ": npz: no array of poses known by its name; give one as key: ", names));
+  }
+  if (!options.convention) {
+    throw argument_error(message(file.path().string(), ": npz: '", options.key,
+                                 "' does not tell its convention: world_from_camera or "
+                                 "camera_from_world is to be given"));
+  }
+  return {options.key, *options.convention};
+}
+
+/// Size of the maps that belong to the poses.
+inline image_extent size_of_maps(const npz_file& file) {
+  for (const char* name : {"depth", "depths", "depth_conf", "local_points", "points", "conf"}) {
+    if (!file.contains(name) || file.is_unreadable(name)) continue;
+    std::vector<std::size_t> shape = file.read_header(name).shape;
+    const bool channels = shape.size() > 3 && (shape.back() == 1 || shape.back() == 3);
+    if (channels) shape.pop_back();
+    if (shape.size() >= 2) return {shape.back(), shape[shape.size() - 2]};
+  }
+  return {};
+}
+
+/// Scales intrinsics of the original images to the maps' size. Returns whether it was needed.
+inline bool scale_to_maps(math::camera& c) {
+  constexpr double far_side = 0.9;
+  const auto width = static_cast<double>(c.width);
+  const auto height = static_cast<double>(c.height);
+  if (c.width == 0 || c.cx() <= far_side * width || c.cy() <= far_side * height) return false;
+  const double sx = width / (2 * c.cx());
+  const double sy = height / (2 * c.cy());
+  c.parameters = {c.fx() * sx, c.fy() * sy, width / 2, height / 2};
+  return true;
+}
+
+inline std::vector<math::camera> read_npz_cameras(const npz_file& file) {
+  for (const char* name : {"intrinsics", "ixts", "intrinsic", "K"}) {
+    if (!file.contains(name)) continue;
+    const image_extent size = size_of_maps(file);
+    return cameras_of_array(file.read(name), size.width, size.height,
+                            message(file.path().string(), '[', name, ']'));
+  }
+  return {};
+}
+
+}  // namespace detail
+
+inline posed_images read_pose_npz(const std::filesystem::path& path,
+                                  const pose_npz_options& options) {
+  const npz_file file(path);
+  const pose_key key = detail::find_pose_key(file, options);
+  const pose_frame frame{options.convention.value_or(key.convention), options.axes};
+  posed_images images;
+  images.trajectory =
+      poses_of_array(file.read(key.name), frame, message(path.string(), '[', key.name, ']'));
+  images.cameras = detail::read_npz_cameras(file);
+  const std::size_t n = images.trajectory.size();
+  if (!images.cameras.empty() && images.cameras.size() != n) {
+    throw format_error(
+        path, message("npz: intrinsics for ", images.cameras.size(), " images, poses for ", n));
+  }
+  const auto scaled = std::count_if(images.cameras.begin(), images.cameras.end(),
+                                    [](math::camera& c) { return detail::scale_to_maps(c); });
+  if (scaled > 0) {
+    images.trajectory.warnings.push_back(
+        message(scaled, " of ", n,
+                " intrinsics belong to a larger image than the depth maps: scaled to these"));
+  }
+  return images;
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/metashape.hpp
+
+#if defined(AIB_WITH_XML)
+#include <pugixml.hpp>
+
+namespace aib::io {
+
+/// The cameras of an Agisoft Metashape XML file, in the order of the file, named by their labels.
+/// A camera without a transform stays, unregistered.
+///
+/// Poses are in the world of the component's transform, else of the chunk's; where there is
+/// neither, in the chunk's own frame of no known unit, and a warning says so. Skew (b2) and k4 have
+/// no place in COLMAP's models and are left out of the intrinsics with a warning.
+/// Throws format_error where it is no such file, a matrix is not a pose, or there is no camera.
+/// Source: Agisoft Metashape Professional manual 2.0, Appendix D (camera models).
+[[nodiscard]] posed_images read_metashape(const std::filesystem::path& path);
+
+namespace detail {
+
+/// Reads one document; errors carry the file.
+class metashape_reader {
+ public:
+  explicit metashape_reader(const std::filesystem::path& path) : path_(path) {
+    const std::string text = read_file(path);
+    const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
+    if (!parsed) {
+      throw format_error(path, at_byte{static_cast<std::uint64_t>(parsed.offset)},
+                         message("xml: ", parsed.description()));
+    }
+    chunk_ = document_.child("document").child("chunk");
+    if (!chunk_) fail("<document><chunk> expected");
+  }
+
+  posed_images read() {
+    read_sensors();
+    read_worlds();
+    posed_images images;
+    for (const pugi::xpath_node& node : chunk_.child("cameras").select_nodes(".//camera"))
+      add(images, node.node());
+    images.trajectory = checked_trajectory(std::move(images.trajectory), path_, "metashape");
+    finish(images);
+    return images;
+  }
+
+ private:
+  void read_sensors() {
+    for (const pugi::xml_node sensor : chunk_.child("sensors").children("sensor"))
+      sensors_[sensor.attribute("id").value()] = camera_of(sensor);
+  }
+
+  /// Transforms to the world by component; that of the chunk has the name "".
+  void read_worlds() {
+    if (const auto world = world_of(chunk_)) worlds_[""] = *world;
+    for (const pugi::xml_node component : chunk_.child("components").children("component")) {
+      if (const auto world = world_of(component))
+        worlds_[component.attribute("id").value()] = *world;
+    }
+  }
+
+  void add(posed_images& images, const pugi::xml_node& camera) {
+    const std::string label = camera.attribute("label").value();
+    images.trajectory.names.push_back(label);
+    images.trajectory.world_from_camera.push_back(pose_of(camera, label));
+    const auto sensor = sensors_.find(camera.attribute("sensor_id").value());
+    if (sensor != sensors_.end() && sensor->second) images.cameras.push_back(*sensor->second);
+  }
+
+  math::rigid3 pose_of(const pugi::xml_node& camera, const std::string& label) {
+    const pugi::xml_node transform = camera.child("transform");
+    if (!transform) return unregistered_pose();
+    const std::vector<double> n = numbers(transform, 16);
+    using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+    const std::string component = camera.attribute("component_id").value();
+    try {
+      const math::rigid3 pose = pose_from_matrix(Eigen::Map<const rows>(n.data()));
+      const auto world = worlds_.contains(component) ? worlds_.find(component) : worlds_.find("");
+      components_.insert(component);
+      if (world != worlds_.end()) return world->second * pose;
+      in_chunk_frame_ = true;
+      return pose;
+    } catch (const argument_error& e) {
+      fail(message("camera '", label, "': ", e.what()));
+    }
+  }
+
+  std::optional<math::sim3> world_of(const pugi::xml_node& owner) const {
+    const pugi::xml_node transform = owner.child("transform");
+    if (!transform.child("rotation") || !transform.child("translation")) return std::nullopt;
+    const std::vector<double> r = numbers(transform.child("rotation"), 9);
+    const std::vector<double> t = numbers(transform.child("translation"), 3);
+    const double scale = transform.child("scale") ? numbers(transform.child("scale"), 1)[0] : 1;
+    pose_matrix matrix;
+    matrix << r[0], r[1], r[2], t[0], r[3], r[4], r[5], t[1], r[6], r[7], r[8], t[2];
+    try {
+      const math::rigid3 rigid = pose_from_matrix(matrix);
+      if (!rigid.is_finite() || !(scale > 0) || !std::isfinite(scale))
+        throw argument_error("finite numbers and a scale above 0 expected");
+      return math::sim3{scale, rigid.rotation, rigid.translation};
+    } catch (const argument_error& e) {
+      fail(message("<transform> to the world: ", e.what()));
+    }
+  }
+
+  /// The adjusted calibration of a sensor, else its first; nothing where it has none of a known
+  /// type.
+  std::optional<math::camera> camera_of(const pugi::xml_node& sensor) {
+    using math::camera_model;
+    pugi::xml_node c = sensor.find_child_by_attribute("calibration", "class", "adjusted");
+    if (!c) c = sensor.child("calibration");
+    const pugi::xml_node resolution = sensor.child("resolution");
+    const auto width = number(resolution.attribute("width").value());
+    const auto height = number(resolution.attribute("height").value());
+    if (!c || !(width >= 1 && width < 1e9) || !(height >= 1 && height < 1e9)) return std::nullopt;
+    const auto of = [&](camera_model model, std::vector<double> parameters) {
+      return math::camera{model, static_cast<std::uint64_t>(width),
+                          static_cast<std::uint64_t>(height), std::move(parameters)};
+    };
+    const auto d = [&](const char* name) {
+      const pugi::xml_node value = c.child(name);
+      return value ? numbers(value, 1)[0] : 0;
+    };
+    const std::string_view type = c.attribute("type").value();
+    if (type == "spherical") return of(camera_model::equirectangular, {width, height});
+    if (!c.child("f")) return std::nullopt;
+    const double fx = d("f") + d("b1");
+    const double cx = width / 2 + d("cx");
+    const double cy = height / 2 + d("cy");
+    left_out_ |= d("b2") != 0;
+    if (type == "fisheye") {
+      left_out_ |= d("p1") != 0 || d("p2") != 0;
+      return of(camera_model::opencv_fisheye,
+                {fx, d("f"), cx, cy, d("k1"), d("k2"), d("k3"), d("k4")});
+    }
+    if (type != "frame") return std::nullopt;
+    left_out_ |= d("k4") != 0;
+    // Metashape's p1 and p2 stand in the other order than OpenCV's.
+    return of(camera_model::full_opencv,
+              {fx, d("f"), cx, cy, d("k1"), d("k2"), d("p2"), d("p1"), d("k3"), 0, 0, 0});
+  }
+
+  void finish(posed_images& images) const {
+    std::vector<std::string>& warnings = images.trajectory.warnings;
+    if (in_chunk_frame_)
+      warnings.push_back("no transform to the world: the frame and unit of the chunk");
+    if (components_.size() > 1) {
+      warnings.push_back(message("the cameras lie in ", components_.size(),
+                                 " components, which need not fit each other"));
+    }
+    if (left_out_) warnings.push_back("b2, k4 or p of a fisheye are left out of the intrinsics");
+    if (images.cameras.size() == images.trajectory.size()) return;
+    warnings.push_back(message("intrinsics are known for ", images.cameras.size(), " of ",
+                               images.trajectory.size(), " cameras: none are given"));
+    images.cameras.clear();
+  }
+
+  static double number(std::string_view text) {
+    return parse<double>(trim(text)).value_or(std::nan(""));
+  }
+
+  std::vector<double> numbers(const pugi::xml_node& node, std::size_t n) const {
+    std::vector<std::string_view> fields;
+    split(node.child_value(), fields);
+    std::vector<double> values;
+    for (const std::string_view field : fields) {
+      const auto value = parse<double>(field);
+      if (!value) fail(message("<", node.name(), ">: a number expected, found '", field, "'"));
+      values.push_back(*value);
+    }
+    if (values.size() != n)
+      fail(message("<", node.name(), ">: ", n, " numbers expected, found ", values.size()));
+    return values;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("metashape: ", what));
+  }
+
+  const std::filesystem::path& path_;
+  pugi::xml_document document_;
+  pugi::xml_node chunk_;
+  std::map<std::string, std::optional<math::camera>> sensors_;
+  std::map<std::string, math::sim3> worlds_;
+  std::set<std::string> components_;
+  bool in_chunk_frame_ = false;
+  bool left_out_ = false;
+};
+
+}  // namespace detail
+
+inline posed_images read_metashape(const std::filesystem::path& path) {
+  return detail::metashape_reader(path).read();
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/trajectory.hpp
+
+#ifdef AIB_WITH_JSON
+#endif
+#ifdef AIB_WITH_NPZ
+#endif
+#ifdef AIB_WITH_XML
+#endif
+
+namespace aib::io {
+
+/// How poses are read. What is left out is told from the file or is the format's own.
+struct trajectory_options {
+  std::optional<pose_format> format = {};
+  std::optional<pose_convention> convention = {};  ///< needed for NPY and unknown NPZ arrays
+  std::optional<camera_axes> axes = {};
+  quaternion_order quaternion = quaternion_order::xyzw;  ///< TUM only
+  std::string key = {};                                  ///< NPZ only: the array of the poses
+  std::vector<std::string> names = {};  ///< one a pose, for files that do not name their images
+  image_extent size = {};               ///< for intrinsics of files that do not say it
+};
+
+/// The poses of a file or folder in the house's frame, with the intrinsics where it has any:
+///
+/// format             from                                       convention, axes
+/// tum                `stamp tx ty tz qx qy qz qw` a line        world_from_camera, opencv
+/// kitti              3 x 4 matrix a line                        world_from_camera, opencv
+/// euroc              csv with stamps in ns                      world_from_body
+/// log                Tanks and Temples                          world_from_camera, opencv
+/// da3                camera_poses.txt, intrinsic.txt            world_from_camera, opencv
+/// colmap             a model or a folder of models (largest)    its own
+/// transforms         transforms.json (NeRF, nerfstudio)         world_from_camera, opengl
+/// opensfm            reconstruction.json (largest component)    its own
+/// metashape          cameras.xml                                its own
+/// reality_capture    csv of internal and external parameters    its own
+/// npy, npz           N x 4 x 4 or N x 3 x 4                     as told, opencv
+///
+/// Throws io_error, format_error as the readers do; argument_error where an option does not fit the
+/// format or the number of names is not that of the poses.
+[[nodiscard]] posed_images read_posed_images(const std::filesystem::path& path,
+                                             const trajectory_options& options = {});
+
+/// The poses alone, see read_posed_images.
+[[nodiscard]] pose::trajectory read_trajectory(const std::filesystem::path& path,
+                                               const trajectory_options& options = {});
+
+/// Image name -> camera, of every format that has intrinsics, see read_posed_images. Images without
+/// a name are called by their index ("0", "1", ...).
+/// Throws format_error where the file has no intrinsics.
+[[nodiscard]] std::map<std::string, math::camera> read_cameras(
+    const std::filesystem::path& path, const trajectory_options& options = {});
+
+namespace detail {
+
+[[noreturn]] inline void needs_library(const std::filesystem::path& path,
+                                       std::string_view format,
+                                       std::string_view library) {
+  throw argument_error(message(path.string(), ": ", format, " is read with ", library,
+                               ", which this program was built without"));
+}
+
+/// The file that is meant where a folder is given.
+inline std::filesystem::path file_in(const std::filesystem::path& path, const char* name) {
+  return std::filesystem::is_directory(path) ? path / name : path;
+}
+
+/// Reads one file in its format with the options that fit it.
+class pose_reader {
+ public:
+  pose_reader(const std::filesystem::path& path,
+              pose_format format,
+              const trajectory_options& options)
+      : path_(path), format_(format), options_(options) {}
+
+  posed_images read() const {
+    reject_unused_options();
+    switch (format_) {
+      case pose_format::tum:
+        return {read_tum(path_, {frame(), options_.quaternion}), {}};
+      case pose_format::kitti:
+        return {read_kitti(path_, frame()), {}};
+      case pose_format::euroc:
+        return {read_euroc(path_, frame()), {}};
+      case pose_format::log:
+        return {read_tanks_and_temples(path_, frame()), {}};
+      case pose_format::da3:
+        return read_da3_streaming(path_, frame());
+      case pose_format::colmap:
+        return from_colmap();
+      case pose_format::transforms:
+        return from_transforms();
+      case pose_format::opensfm:
+        return from_opensfm();
+      case pose_format::metashape:
+        return from_metashape();
+      case pose_format::reality_capture:
+        return read_reality_capture(path_, options_.size);
+      case pose_format::npy:
+        return from_npy();
+      case pose_format::npz:
+        break;
+    }
+    return from_npz();
+  }
+
+ private:
+  pose_frame frame(camera_axes axes = camera_axes::opencv) const {
+    return {options_.convention.value_or(pose_convention::world_from_camera),
+            options_.axes.value_or(axes)};
+  }
+
+  posed_images from_colmap() const {
+    const bool folder = std::filesystem::is_directory(path_);
+    const colmap_model model =
+        read_colmap(folder ? path_ : path_.parent_path(), colmap_content::cameras_and_images);
+    posed_images images{model.trajectory, {}};
+    for (std::size_t i = 0; i < model.trajectory.size(); ++i)
+      images.cameras.push_back(model.camera(i));
+    return images;
+  }
+
+  posed_images from_npy() const {
+    if (!options_.convention) {
+      throw argument_error(message(path_.string(),
+                                   ": an array does not tell its convention: world_from_camera or "
+                                   "camera_from_world is to be given"));
+    }
+    return {poses_of_array(read_npy(path_), frame(), path_), {}};
+  }
+
+#ifdef AIB_WITH_NPZ
+  posed_images from_npz() const {
+    return read_pose_npz(path_, {options_.key, options_.convention, frame().axes});
+  }
+#else
+  posed_images from_npz() const { needs_library(path_, "NPZ", "zlib"); }
+#endif
+
+#ifdef AIB_WITH_JSON
+  posed_images from_transforms() const {
+    return read_transforms(file_in(path_, "transforms.json"),
+                           {frame(camera_axes::opengl), options_.size});
+  }
+  posed_images from_opensfm() const { return read_opensfm(file_in(path_, "reconstruction.json")); }
+#else
+  posed_images from_transforms() const { needs_library(path_, "JSON", "nlohmann-json"); }
+  posed_images from_opensfm() const { needs_library(path_, "JSON", "nlohmann-json"); }
+#endif
+
+#ifdef AIB_WITH_XML
+  posed_images from_metashape() const { return read_metashape(path_); }
+#else
+  posed_images from_metashape() const { needs_library(path_, "XML", "pugixml"); }
+#endif
+
+  void reject_unused_options() const {
+    const auto reject = [&](std::string_view option) {
+      throw argument_error(message(path_.string(), ": the option ", option,
+                                   " does not fit the format ", name(format_)));
+    };
+    const bool own_frame = format_ == pose_format::colmap || format_ == pose_format::opensfm ||
+                           format_ == pose_format::metashape ||
+                           format_ == pose_format::reality_capture;
+    if (own_frame && options_.convention) reject("convention");
+    if (own_frame && options_.axes) reject("axes");
+    if (format_ != pose_format::npz && !options_.key.empty()) reject("key");
+    if (format_ != pose_format::tum && options_.quaternion != quaternion_order::xyzw)
+      reject("quaternion");
+  }
+
+  const std::filesystem::path& path_;
+  pose_format format_;
+  const trajectory_options& options_;
+};
+
+}  // namespace detail
+
+inline posed_images read_posed_images(const std::filesystem::path& path,
+                                      const trajectory_options& options) {
+  const pose_format format = options.format ? *options.format : detect_pose_format(path);
+  posed_images images = detail::pose_reader(path, format, options).read();
+  if (options.names.empty()) return images;
+  if (options.names.size() != images.trajectory.size()) {
+    throw argument_error(message(path.string(), ": ", options.names.size(), " names for ",
+                                 images.trajectory.size(), " poses"));
+  }
+  images.trajectory.names = options.names;
+  return images;
+}
+
+inline pose::trajectory read_trajectory(const std::filesystem::path& path,
+                                        const trajectory_options& options) {
+  return read_posed_images(path, options).trajectory;
+}
+
+inline std::map<std::string, math::camera> read_cameras(const std::filesystem::path& path,
+                                                        const trajectory_options& options) {
+  const posed_images images = read_posed_images(path, options);
+  if (images.cameras.empty()) throw format_error(path, "no intrinsics in the file");
+  std::map<std::string, math::camera> cameras;
+  const std::vector<std::string>& names = images.trajectory.names;
+  for (std::size_t i = 0; i < images.cameras.size(); ++i)
+    cameras[names.empty() ? message(i) : names[i]] = images.cameras[i];
+  return cameras;
 }
 
 }  // namespace aib::io

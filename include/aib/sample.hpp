@@ -1,0 +1,8 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Clouds from meshes, depth maps and voxels.
+
+#include <aib/sample/mesh.hpp>

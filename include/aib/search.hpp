@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Nearest neighbours and ray queries.
+
+#include <aib/search/box_tree.hpp>
+#include <aib/search/buffer.hpp>
+#include <aib/search/curve.hpp>
+#include <aib/search/hilbert.hpp>
+#include <aib/search/nearest.hpp>
+#include <aib/search/nearest_one.hpp>
+#include <aib/search/nearest_packet.hpp>
+#include <aib/search/radix_sort.hpp>
