@@ -45,6 +45,9 @@ struct colmap_model {
   }
 };
 
+/// How a model's files are written.
+enum class colmap_encoding { binary, text };
+
 /// What of a model is read.
 enum class colmap_content {
   everything,
@@ -79,16 +82,16 @@ namespace colmap::detail {
 
 namespace fs = std::filesystem;
 
-enum class encoding { binary, text };
-
 inline bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
 }
 
-inline std::optional<encoding> find_encoding(const fs::path& folder) {
-  if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin")) return encoding::binary;
-  if (is_there(folder / "cameras.txt") && is_there(folder / "images.txt")) return encoding::text;
+inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
+  if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin"))
+    return colmap_encoding::binary;
+  if (is_there(folder / "cameras.txt") && is_there(folder / "images.txt"))
+    return colmap_encoding::text;
   return std::nullopt;
 }
 
@@ -109,10 +112,10 @@ inline std::vector<fs::path> numbered_models(const fs::path& folder) {
 /// The three or five files of a model, whichever way they are written.
 class model_files {
  public:
-  model_files(fs::path folder, encoding kind) : folder_(std::move(folder)), kind_(kind) {}
+  model_files(fs::path folder, colmap_encoding kind) : folder_(std::move(folder)), kind_(kind) {}
 
   [[nodiscard]] fs::path file(const char* stem) const {
-    return folder_ / (std::string(stem) + (kind_ == encoding::binary ? ".bin" : ".txt"));
+    return folder_ / (std::string(stem) + (kind_ == colmap_encoding::binary ? ".bin" : ".txt"));
   }
   [[nodiscard]] auto cameras() const {
     return read("cameras", binary::read_cameras, text::read_cameras);
@@ -136,11 +139,11 @@ class model_files {
   Records read(const char* stem,
                Records (*read_binary)(const fs::path&),
                Records (*read_text)(const fs::path&)) const {
-    return kind_ == encoding::binary ? read_binary(file(stem)) : read_text(file(stem));
+    return kind_ == colmap_encoding::binary ? read_binary(file(stem)) : read_text(file(stem));
   }
 
   fs::path folder_;
-  encoding kind_;
+  colmap_encoding kind_;
 };
 
 /// camera_from_world of each image that the rigs and frames pose.
@@ -221,7 +224,9 @@ inline void read_points(colmap_model& model, const model_files& files, colmap_co
   model.track_lengths = std::move(p.track_lengths);
 }
 
-inline colmap_model read_model(const fs::path& folder, encoding kind, colmap_content content) {
+inline colmap_model read_model(const fs::path& folder,
+                               colmap_encoding kind,
+                               colmap_content content) {
   const model_files files(folder, kind);
   colmap_model model;
   model.path = folder;

@@ -111,12 +111,12 @@ inline constexpr std::uint32_t zip64_locator = 0x07064b50;
 inline constexpr std::uint32_t in_zip64 = 0xffffffff;  ///< the true number is in the extra field
 
 /// Inflates raw deflate data block by block.
-class inflater {
+class deflate_stream {
  public:
-  inflater() { ready_ = ::inflateInit2(&stream_, -MAX_WBITS) == Z_OK; }
-  inflater(const inflater&) = delete;
-  inflater& operator=(const inflater&) = delete;
-  ~inflater() { ::inflateEnd(&stream_); }
+  deflate_stream() { ready_ = ::inflateInit2(&stream_, -MAX_WBITS) == Z_OK; }
+  deflate_stream(const deflate_stream&) = delete;
+  deflate_stream& operator=(const deflate_stream&) = delete;
+  ~deflate_stream() { ::inflateEnd(&stream_); }
 
   void input(std::string_view packed) {
     stream_.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
@@ -348,12 +348,12 @@ inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
   }
   std::string out(static_cast<std::size_t>(n), '\0');
   std::size_t filled = 0;
-  detail::inflater inflate;
+  detail::deflate_stream stream;
   constexpr std::uint64_t block_bytes = std::uint64_t{1} << 20;
   for (std::uint64_t at = 0; at < m.packed && filled < out.size();) {
     const std::string block = part(begin + at, std::min(block_bytes, m.packed - at));
-    inflate.input(block);
-    if (!inflate.fill(out, filled)) fail(m, "the deflated data is damaged");
+    stream.input(block);
+    if (!stream.fill(out, filled)) fail(m, "the deflated data is damaged");
     at += block.size();
   }
   if (filled < out.size())

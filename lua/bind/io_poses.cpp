@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/io/npy.hpp>
+#include <aib/io/trajectory.hpp>
+#include <aib/io/trajectory_write.hpp>
+
+#include "camera.hpp"
+#include "kit.hpp"
+
+#ifdef AIB_WITH_NPZ
+#include <aib/io/npz.hpp>
+#endif
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aib::bind {
+
+namespace {
+
+namespace fs = std::filesystem;
+using io::camera_axes;
+using io::pose_convention;
+using io::pose_format;
+using io::quaternion_order;
+
+constexpr std::initializer_list<choice<pose_format>> formats = {
+    {"tum", pose_format::tum},
+    {"kitti", pose_format::kitti},
+    {"euroc", pose_format::euroc},
+    {"log", pose_format::log},
+    {"da3", pose_format::da3},
+    {"colmap", pose_format::colmap},
+    {"transforms", pose_format::transforms},
+    {"opensfm", pose_format::opensfm},
+    {"metashape", pose_format::metashape},
+    {"reality_capture", pose_format::reality_capture},
+    {"npy", pose_format::npy},
+    {"npz", pose_format::npz}};
+
+constexpr std::initializer_list<choice<pose_convention>> conventions = {
+    {"world_from_camera", pose_convention::world_from_camera},
+    {"camera_from_world", pose_convention::camera_from_world}};
+
+constexpr std::initializer_list<choice<camera_axes>> axes = {{"opencv", camera_axes::opencv},
+                                                             {"opengl", camera_axes::opengl}};
+
+/// A choice that may be left out.
+template <class E>
+std::optional<E> maybe(options& o, const char* name, std::initializer_list<choice<E>> choices) {
+  if (!o.has(name)) return std::nullopt;
+  return o.choice(name, E{}, choices);
+}
+
+io::trajectory_options reading_options(options& o) {
+  io::trajectory_options r;
+  r.format = maybe(o, "format", formats);
+  r.convention = maybe(o, "convention", conventions);
+  r.axes = maybe(o, "axes", axes);
+  r.quaternion = o.choice("quaternion", r.quaternion,
+                          {{"xyzw", quaternion_order::xyzw}, {"wxyz", quaternion_order::wxyz}});
+  r.key = o.text("key", "");
+  r.names = o.get<std::vector<std::string>>("names").value_or(std::vector<std::string>());
+  r.size = {o.count("width", 0), o.count("height", 0)};
+  o.done();
+  return r;
+}
+
+io::trajectory_write_options writing_options(options& o) {
+  using io::colmap_encoding;
+  io::trajectory_write_options w;
+  w.format = maybe(o, "format", formats);
+  w.frame.convention = o.choice("convention", w.frame.convention, conventions);
+  w.frame.axes = o.choice("axes", w.frame.axes, axes);
+  w.encoding = o.choice("encoding", w.encoding,
+                        {{"binary", colmap_encoding::binary}, {"text", colmap_encoding::text}});
+  return w;
+}
+
+/// The cameras of the poses, by name.
+std::vector<math::camera> cameras_option(options& o, const pose::trajectory& t) {
+  const auto by_name = o.get<camera_map>("cameras");
+  std::vector<math::camera> cameras;
+  if (!by_name) return cameras;
+  for (const std::string& name : t.names) {
+    const auto camera = by_name->find(name);
+    if (camera == by_name->end()) o.reject("cameras", message("no camera of '", name, "'"));
+    cameras.push_back(camera->second);
+  }
+  return cameras;
+}
+
+record as_record(lua_State* state, io::colmap_model model) {
+  record r(state);
+  r.set("path", model.path).set("cameras", io::cameras_by_name(model));
+  r.set("point_errors", model.point_errors_px).set("track_lengths", model.track_lengths);
+  r.set("trajectory", std::move(model.trajectory)).set("points", std::move(model.points));
+  return r;
+}
+
+std::string print_array(const io::array& a) {
+  return message("array(", name(a.type), " ", io::text_of_shape(a.shape), ")");
+}
+
+std::size_t bytes_of_array(const io::array& a) { return a.bytes.size(); }
+
+bool is_npz(const fs::path& path) { return path.extension() == ".npz"; }
+
+#ifdef AIB_WITH_NPZ
+io::array read_member(const fs::path& path, const std::string& key) {
+  const io::npz_file file(path);
+  const std::vector<std::string> names = file.names();
+  return file.read(key.empty() && names.size() == 1 ? names.front() : key);
+}
+std::vector<std::string> member_names(const fs::path& path) {
+  return is_npz(path) ? io::npz_file(path).names() : std::vector<std::string>();
+}
+#else
+io::array read_member(const fs::path& path, const std::string&) {
+  io::detail::needs_library(path, "NPZ", "zlib");
+}
+std::vector<std::string> member_names(const fs::path& path) {
+  io::detail::needs_library(path, "NPZ", "zlib");
+}
+#endif
+
+void bind_array(lua_State* state) {
+  type<io::array>(state, "array", print_array, bytes_of_array)
+      .length([](const io::array& a) { return a.size(); })
+      .element([](const io::array& a, std::size_t i) { return a[i]; })
+      .field("shape", [](const io::array& a) { return a.shape; })
+      .field("dtype", [](const io::array& a) { return name(a.type); })
+      .method("at", {"index"}, [](const io::array& a, std::size_t index) {
+        if (index == 0) throw argument_error("array:at: indices begin at 1");
+        return a.at(index - 1);
+      });
+}
+
+void bind_arrays(lua_State* state) {
+  module(state, "io")
+      .function("read_array", {"path", "options"},
+                [](const fs::path& path, options& o) {
+                  const std::string key = o.text("key", "");
+                  o.done();
+                  return is_npz(path) ? read_member(path, key) : io::read_npy(path);
+                })
+      .function("array_names", {"path"}, [](const fs::path& path) { return member_names(path); })
+      .function("write_array", {"path", "array"},
+                [](const fs::path& path, const io::array& a) { io::write_npy(path, a); });
+}
+
+void bind_trajectories(lua_State* state) {
+  module(state, "io")
+      .function("read_trajectory", {"path", "options"},
+                [](const fs::path& path, options& o) {
+                  return io::read_trajectory(path, reading_options(o));
+                })
+      .function("read_cameras", {"path", "options"},
+                [](const fs::path& path, options& o) {
+                  return io::read_cameras(path, reading_options(o));
+                })
+      .function("write_trajectory", {"path", "trajectory", "options"},
+                [](const fs::path& path, const pose::trajectory& t, options& o) {
+                  const io::trajectory_write_options w = writing_options(o);
+                  const io::posed_images images{t, cameras_option(o, t)};
+                  o.done();
+                  io::write_trajectory(path, images, w);
+                });
+}
+
+void bind_colmap(lua_State* state) {
+  module(state, "io")
+      .function(
+          "read_colmap", {"path"},
+          [](lua_State* l, const fs::path& path) { return as_record(l, io::read_colmap(path)); })
+      .function("read_colmap_models", {"path"}, [](lua_State* l, const fs::path& path) {
+        std::vector<record> models;
+        for (io::colmap_model& model : io::read_colmap_models(path))
+          models.push_back(as_record(l, std::move(model)));
+        return models;
+      });
+}
+
+}  // namespace
+
+void bind_io_poses(lua_State* state) {
+  bind_array(state);
+  bind_arrays(state);
+  bind_trajectories(state);
+  bind_colmap(state);
+}
+
+}  // namespace aib::bind
