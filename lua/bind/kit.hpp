@@ -18,6 +18,7 @@
 #include "kit/point.hpp"
 #include "kit/record.hpp"
 #include "kit/session.hpp"
+#include "kit/show.hpp"
 #include "kit/suggest.hpp"
 #include "kit/type.hpp"
 #include "kit/value.hpp"

@@ -28,9 +28,9 @@ requires(Size > 0) struct value<Eigen::Matrix<Scalar, Size, 1>> {
 };
 
 /// A fixed-size matrix is a list of its rows.
-template <std::floating_point Scalar, int Rows, int Columns>
-requires(Rows > 0 && Columns > 1) struct value<Eigen::Matrix<Scalar, Rows, Columns>> {
-  using matrix = Eigen::Matrix<Scalar, Rows, Columns>;
+template <std::floating_point Scalar, int Rows, int Columns, int Options>
+requires(Rows > 0 && Columns > 1) struct value<Eigen::Matrix<Scalar, Rows, Columns, Options>> {
+  using matrix = Eigen::Matrix<Scalar, Rows, Columns, Options>;
   using row = Eigen::Matrix<Scalar, Columns, 1>;
 
   static std::string expected() {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -86,6 +87,8 @@ struct value {
     return *h->held;
   }
   static void push(lua_State* state, T object) {
+    if (!registered<T>::print)
+      throw std::logic_error("a binding gives a value of a type that nobody bound");
     auto held = std::make_unique<T>(std::move(object));
     session& s = session::of(state);
     const std::size_t bytes = sizeof(T) + (registered<T>::bytes ? registered<T>::bytes(*held) : 0);
