@@ -74,7 +74,7 @@ inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t pa
 }
 
 inline std::string vector_text(const Eigen::Vector3d& v) {
-  const auto digits = [](double x) { return std::round(x * 1000) / 1000; };
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
   return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
 }
 

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/align/trajectory.hpp>
+#include <aib/align/umeyama.hpp>
+
+#include "kit.hpp"
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aib::bind {
+
+namespace {
+
+using align::rank_rule;
+
+rank_rule rank_option(options& o) {
+  return o.choice("convention", rank_rule::relative,
+                  {{"relative", rank_rule::relative}, {"evo", rank_rule::evo}});
+}
+
+/// `robust = true`, or a table of its own options.
+std::optional<align::ransac_options> robust_options(options& o) {
+  align::ransac_options r;
+  const bool asked = o.flag("robust", false);
+  r.distance = o.number("robust_distance", r.distance);
+  r.iterations = o.count("robust_iterations", r.iterations);
+  r.seed = o.count("seed", r.seed);
+  if (!asked) return std::nullopt;
+  return r;
+}
+
+align::trajectory_options trajectory_options(options& o) {
+  using align::align_mode;
+  align::trajectory_options t;
+  t.fit.mode = o.choice("mode", t.fit.mode,
+                        {{"sim3", align_mode::sim3},
+                         {"se3", align_mode::se3},
+                         {"yaw", align_mode::yaw},
+                         {"scale", align_mode::scale},
+                         {"first", align_mode::first}});
+  t.fit.rotation_weight = o.number("rotation_weight", 0);
+  t.fit.up = o.get<Eigen::Vector3d>("up").value_or(t.fit.up);
+  t.fit.convention = rank_option(o);
+  t.n = o.count("n", 0);
+  t.outliers.factor = o.get<double>("outlier_factor");
+  t.outliers.distance = o.get<double>("outlier_distance");
+  t.robust = robust_options(o);
+  t.stand_off = o.number("stand_off", t.stand_off);
+  return t;
+}
+
+/// The positions of a trajectory, or the points themselves.
+std::vector<Eigen::Vector3d> points_of(const sol::object& object, const char* argument) {
+  if (const auto* t = get_if<pose::trajectory>(object)) return positions(*t);
+  if (auto points = read_if<std::vector<Eigen::Vector3d>>(object)) return std::move(*points);
+  throw argument_error(message("aib.align.umeyama: argument ", argument,
+                               ": trajectory or list of points {x, y, z} expected"));
+}
+
+record as_record(lua_State* state, const align::alignment& a) {
+  record r(state);
+  std::vector<std::size_t> outliers = a.outliers;
+  for (std::size_t& i : outliers) ++i;
+  r.set("transform", a.transform).set("n_inliers", a.n_inliers).set("outliers", outliers);
+  r.set("rmse", a.rmse).set("condition", a.condition).set("turn_deg", a.turn_deg);
+  return r.set("turn_error", a.turn_error).set("warnings", a.warnings);
+}
+
+}  // namespace
+
+void bind_align(lua_State* state) {
+  module(state, "align")
+      .function("umeyama", {"est", "ref", "options"},
+                [](const sol::object& est, const sol::object& ref, options& o) {
+                  const align::umeyama_options u{o.flag("scale", true), rank_option(o)};
+                  o.done();
+                  const auto x = points_of(est, "1 (est)"), y = points_of(ref, "2 (ref)");
+                  return align::umeyama(x, y, u);
+                })
+      .function(
+          "trajectory", {"est", "ref", "options"},
+          [](lua_State* l, const pose::trajectory& est, const pose::trajectory& ref, options& o) {
+            const align::trajectory_options t = trajectory_options(o);
+            o.done();
+            return as_record(l, align::trajectory(est, ref, t));
+          });
+}
+
+}  // namespace aib::bind

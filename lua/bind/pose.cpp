@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/pose/ape.hpp>
+#include <aib/pose/associate.hpp>
+#include <aib/pose/auc.hpp>
+#include <aib/pose/focal.hpp>
+#include <aib/pose/registration.hpp>
+#include <aib/pose/relative_angles.hpp>
+#include <aib/pose/rpe.hpp>
+#include <aib/pose/trajectory.hpp>
+
+#include "camera.hpp"
+#include "kit.hpp"
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aib::bind {
+
+namespace {
+
+using pose::trajectory;
+
+std::string print_trajectory(const trajectory& t) {
+  const auto posed = std::count_if(t.world_from_camera.begin(), t.world_from_camera.end(),
+                                   [](const math::rigid3& p) { return p.is_finite(); });
+  std::string text = message("trajectory(", t.size(), " poses");
+  if (static_cast<std::size_t>(posed) < t.size()) text += message(", ", posed, " registered");
+  if (!t.names.empty()) text += message(", names ", t.names.front(), " .. ", t.names.back());
+  if (!t.stamps_s.empty())
+    text += message(", stamps ", t.stamps_s.front(), " .. ", t.stamps_s.back(), " s");
+  return text + ")";
+}
+
+std::size_t bytes_of_trajectory(const trajectory& t) {
+  std::size_t bytes = t.size() * sizeof(math::rigid3) + t.stamps_s.size() * sizeof(double);
+  for (const std::string& name : t.names) bytes += sizeof(name) + name.capacity();
+  return bytes;
+}
+
+/// Rules of names, for functions that compare them.
+void read_name_rules(options& o, pose::associate_options& rules) {
+  rules.ignore_case = o.flag("ignore_case", false);
+  rules.ignore_extension = o.flag("ignore_extension", false);
+  rules.ignore_folder = o.flag("ignore_folder", false);
+}
+
+pose::associate_options association_options(options& o) {
+  using pose::association_rule;
+  using pose::match_by;
+  pose::associate_options a;
+  a.by =
+      o.choice("by", a.by,
+               {{"name", match_by::name}, {"stamp", match_by::stamp}, {"index", match_by::index}});
+  a.max_gap_s = o.number("max_gap", a.max_gap_s);
+  a.offset_s = o.number("offset", a.offset_s);
+  a.rule = o.choice("convention", a.rule,
+                    {{"one_to_one", association_rule::one_to_one}, {"evo", association_rule::evo}});
+  read_name_rules(o, a);
+  o.done();
+  return a;
+}
+
+pose::pose_relation relation_option(options& o) {
+  using enum pose::pose_relation;
+  return o.choice("relation", translation,
+                  {{"translation", translation},
+                   {"rotation_part", rotation_part},
+                   {"full", full},
+                   {"angle_deg", angle_deg},
+                   {"angle_rad", angle_rad},
+                   {"point_distance", point_distance},
+                   {"point_distance_ratio", point_distance_ratio}});
+}
+
+pose::auc_convention convention_option(options& o) {
+  using enum pose::auc_convention;
+  return o.choice("convention", paper,
+                  {{"paper", paper},
+                   {"vggt", vggt},
+                   {"posediffusion", posediffusion},
+                   {"pi3", posediffusion},
+                   {"posediffusion_torch", posediffusion_torch},
+                   {"da3", da3},
+                   {"colmap", colmap},
+                   {"exact", exact}});
+}
+
+unsigned degrees_option(options& o) {
+  const std::size_t max_deg = o.count("max_deg", 30);
+  if (max_deg < 1 || max_deg > 180) o.reject("max_deg", "1..180 expected");
+  return static_cast<unsigned>(max_deg);
+}
+
+std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
+  for (std::size_t& i : index) ++i;
+  return index;
+}
+
+record as_record(lua_State* state, const pose::pose_errors& e) {
+  const stats::summary& s = e.summary;
+  record r(state);
+  r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
+  r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
+  return r.set("errors", e.errors).set("index", one_based(e.index));
+}
+
+std::vector<double> degrees_up_to(std::size_t n) {
+  std::vector<double> out(n);
+  std::iota(out.begin(), out.end(), 1.0);
+  return out;
+}
+
+record as_record(lua_State* state, const pose::auc_result& a) {
+  const std::vector<double> tau = degrees_up_to(a.max_deg);
+  record r(state);
+  r.set("auc", a.auc).set("auc_signed", a.auc_signed).set("convention", name(a.convention));
+  r.set("max_deg", a.max_deg).set("n_pairs", a.n_pairs);
+  r.set("n_zero_baseline", a.n_zero_baseline).set("n_unregistered", a.n_unregistered);
+  return r.set("rra", keyed(state, tau, a.rra)).set("rta", keyed(state, tau, a.rta));
+}
+
+record as_record(lua_State* state, const pose::registration& g) {
+  record r(state);
+  r.set("rate", g.rate).set("n_registered", g.n_registered).set("n_total", g.n_total);
+  return r.set("missing", g.missing);
+}
+
+/// Views with a camera on both sides; a number is the focal length of every reference camera.
+std::vector<pose::camera_pair> views_of(const camera_map& cameras, const sol::object& reference) {
+  std::vector<pose::camera_pair> views;
+  if (const auto focal = read_if<double>(reference)) {
+    for (const auto& [name, camera] : cameras)
+      views.push_back({camera, math::pinhole(camera.width, camera.height, *focal, *focal, 0, 0)});
+    return views;
+  }
+  const auto known = read_if<camera_map>(reference);
+  if (!known) {
+    throw argument_error(
+        "aib.pose.focal_error: argument 2 (ref): table of cameras by image name, or a focal length "
+        "in pixels, expected");
+  }
+  for (const auto& [name, camera] : cameras) {
+    const auto at = known->find(name);
+    if (at != known->end()) views.push_back({camera, at->second});
+  }
+  return views;
+}
+
+void bind_trajectory(lua_State* state) {
+  type<trajectory>(state, "trajectory", print_trajectory, bytes_of_trajectory)
+      .length([](const trajectory& t) { return t.size(); })
+      .element([](const trajectory& t, std::size_t i) { return t.world_from_camera[i]; })
+      .field("names", [](const trajectory& t) { return t.names; })
+      .field("stamps", [](const trajectory& t) { return t.stamps_s; })
+      .field("warnings", [](const trajectory& t) { return t.warnings; })
+      .method("positions", {}, [](const trajectory& t) { return positions(t); })
+      .method("path_length", {},
+              [](const trajectory& t) {
+                return t.empty() ? 0.0 : pose::path_lengths(t.world_from_camera).back();
+              })
+      .method("select", {"indices"},
+              [](const trajectory& t, std::vector<std::size_t> indices) {
+                for (std::size_t& i : indices) {
+                  if (i == 0 || i > t.size()) {
+                    throw argument_error(message("trajectory:select: indices 1..", t.size(),
+                                                 " expected, found ", i));
+                  }
+                  --i;
+                }
+                return select(t, indices);
+              })
+      .method("transformed", {"transform"},
+              [](const trajectory& t, const math::sim3& b_from_a) { return b_from_a * t; });
+}
+
+void bind_association(module& m) {
+  m.function("trajectory", {"poses", "options"},
+             [](const std::vector<math::rigid3>& poses, options& o) {
+               trajectory t{poses,
+                            o.get<std::vector<std::string>>("names").value_or(trajectory{}.names),
+                            o.get<std::vector<double>>("stamps").value_or(trajectory{}.stamps_s),
+                            {}};
+               o.done();
+               check(t);
+               return t;
+             })
+      .function("associate", {"est", "ref", "options"},
+                [](lua_State* l, const trajectory& est, const trajectory& ref, options& o) {
+                  pose::association a = associate(est, ref, association_options(o));
+                  record info(l);
+                  info.set("n_matched", a.n_matched).set("n_estimate_only", a.n_estimate_only);
+                  info.set("n_reference_only", a.n_reference_only);
+                  info.set("estimate_index", one_based(a.estimate_index));
+                  info.set("reference_index", one_based(a.reference_index));
+                  return results(std::move(a.estimate), std::move(a.reference), std::move(info));
+                })
+      .function("registration_rate", {"est", "ref", "options"},
+                [](lua_State* l, const sol::object& est, const trajectory& ref, options& o) {
+                  pose::associate_options rules;
+                  read_name_rules(o, rules);
+                  o.done();
+                  if (const auto* one = get_if<trajectory>(est))
+                    return as_record(l, pose::registration_rate(*one, ref, rules));
+                  if (const auto several = read_if<std::vector<trajectory>>(est))
+                    return as_record(l, pose::registration_rate(*several, ref, rules));
+                  throw argument_error(
+                      "aib.pose.registration_rate: argument 1 (est): trajectory or list of "
+                      "trajectories expected");
+                });
+}
+
+void bind_errors(module& m) {
+  m.function("ape", {"est", "ref", "options"},
+             [](lua_State* l, const trajectory& est, const trajectory& ref, options& o) {
+               const pose::ape_options a{relation_option(o)};
+               o.done();
+               return as_record(l, pose::ape(est, ref, a));
+             })
+      .function("rpe", {"est", "ref", "options"},
+                [](lua_State* l, const trajectory& est, const trajectory& ref, options& o) {
+                  using pose::delta_unit;
+                  using pose::pairs_from;
+                  pose::rpe_options r;
+                  r.relation = relation_option(o);
+                  r.pairs.delta = o.number("delta", r.pairs.delta);
+                  r.pairs.unit = o.choice("unit", r.pairs.unit,
+                                          {{"frames", delta_unit::frames},
+                                           {"m", delta_unit::m},
+                                           {"deg", delta_unit::deg},
+                                           {"rad", delta_unit::rad}});
+                  r.pairs.all_pairs = o.flag("all_pairs", r.pairs.all_pairs);
+                  r.pairs.tolerance = o.number("tolerance", r.pairs.tolerance);
+                  r.from = o.choice(
+                      "pairs_from", r.from,
+                      {{"estimate", pairs_from::estimate}, {"reference", pairs_from::reference}});
+                  o.done();
+                  return as_record(l, pose::rpe(est, ref, r));
+                })
+      .function(
+          "relative_angles", {"est", "ref", "options"},
+          [](lua_State* l, session& s, const trajectory& est, const trajectory& ref, options& o) {
+            pose::relative_angles_options a;
+            a.tau_deg = o.numbers("tau", a.tau_deg);
+            a.threads = s.threads;
+            a.control = s.control;
+            o.done();
+            const auto r = pose::relative_angles(est, ref, a);
+            record out(l);
+            out.set("rra", keyed(l, r.tau_deg, r.rra)).set("rta", keyed(l, r.tau_deg, r.rta));
+            out.set("n_pairs", r.n_pairs).set("n_zero_baseline", r.n_zero_baseline);
+            return out.set("n_unregistered", r.n_unregistered);
+          })
+      .function(
+          "auc", {"est", "ref", "options"},
+          [](lua_State* l, session& s, const trajectory& est, const trajectory& ref, options& o) {
+            pose::auc_options a;
+            a.max_deg = degrees_option(o);
+            a.convention = convention_option(o);
+            a.position_accuracy = o.number("position_accuracy", a.position_accuracy);
+            a.threads = s.threads;
+            a.control = s.control;
+            o.done();
+            return as_record(l, pose::auc(est, ref, a));
+          });
+}
+
+}  // namespace
+
+void bind_pose(lua_State* state) {
+  bind_trajectory(state);
+  module m(state, "pose");
+  bind_association(m);
+  bind_errors(m);
+  m.function("focal_error", {"cameras", "ref", "options"},
+             [](lua_State* l, const camera_map& cameras, const sol::object& ref, options& o) {
+               using pose::focal_over;
+               const focal_over over =
+                   o.choice("over", focal_over::views,
+                            {{"views", focal_over::views}, {"cameras", focal_over::cameras}});
+               o.done();
+               const auto r = pose::focal_error(views_of(cameras, ref), over);
+               return record(l).set("mre", r.mre).set("n", r.n);
+             });
+}
+
+}  // namespace aib::bind
