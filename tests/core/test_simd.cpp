@@ -56,3 +56,21 @@ TEST_CASE("lanes are folded") {
   const double d[4] = {1, 2, 3, 4};
   CHECK(sum(f64x4::load(d)) == 10);
 }
+
+TEST_CASE("doubles are taken apart into mantissa and exponent") {
+  const double a[4] = {1, 0.3, 1e300, 0x1p-1022};
+  double m[4], e[4];
+  mantissa(f64x4::load(a)).store(m);
+  exponent(f64x4::load(a)).store(e);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK((m[i] >= 1 && m[i] < 2));
+    CHECK(std::ldexp(m[i], static_cast<int>(e[i])) == a[i]);
+  }
+}
+
+TEST_CASE("floats are converted to doubles") {
+  const float a[4] = {0.1f, -3, std::numeric_limits<float>::denorm_min(), 1e30f};
+  double out[4];
+  f64x4::convert(a).store(out);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(out[i] == static_cast<double>(a[i]));
+}

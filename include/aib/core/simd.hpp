@@ -5,8 +5,10 @@
 #include <aib/core/isa.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #if !defined(AIB_PLAIN) && defined(__SSE2__)
@@ -18,8 +20,18 @@
 /// The same bits on every machine: each operation is the IEEE one on each lane, nothing is
 /// contracted. `min(a, b)` and `max(a, b)` give `b` where the lanes are unordered. `less(a, b)` has
 /// bit i set where a < b in lane i. `choose(a, b, x, y)` is x where a < b, else y.
-/// `load` and `store` need no alignment.
+/// `load` and `store` need no alignment. `convert` loads floats into doubles. Of doubles that are
+/// positive and normal, `mantissa` is in [1, 2) and `exponent` the power of 2 beside it.
 namespace aib {
+
+namespace detail {
+
+inline constexpr std::int64_t fraction_bits = 0x000fffffffffffff;
+/// The exponent bits of x behind the leading bits of 2^52 make the double 2^52 + 1023 + exponent.
+inline constexpr double exponent_offset = 0x1p52 + 1023;
+
+}  // namespace detail
+
 inline namespace AIB_ISA {
 
 #if !defined(AIB_PLAIN) && defined(__AVX2__)
@@ -52,6 +64,7 @@ struct f64x4 {
   __m256d v;
 
   static f64x4 load(const double* p) { return {_mm256_loadu_pd(p)}; }
+  static f64x4 convert(const float* p) { return {_mm256_cvtps_pd(_mm_loadu_ps(p))}; }
   static f64x4 broadcast(double x) { return {_mm256_set1_pd(x)}; }
   void store(double* p) const { _mm256_storeu_pd(p, v); }
 
@@ -67,6 +80,17 @@ struct f64x4 {
   }
   friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
     return {_mm256_blendv_pd(y.v, x.v, _mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ))};
+  }
+  friend f64x4 mantissa(f64x4 a) {
+    const __m256d one = _mm256_set1_pd(1);
+    const __m256d fraction = _mm256_castsi256_pd(_mm256_set1_epi64x(detail::fraction_bits));
+    return {_mm256_or_pd(_mm256_and_pd(a.v, fraction), one)};
+  }
+  friend f64x4 exponent(f64x4 a) {
+    const __m256i shifted = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 52);
+    const __m256d offset = _mm256_set1_pd(0x1p52);
+    return {_mm256_sub_pd(_mm256_or_pd(_mm256_castsi256_pd(shifted), offset),
+                          _mm256_set1_pd(detail::exponent_offset))};
   }
 };
 
@@ -116,6 +140,10 @@ struct f64x4 {
   __m128d lo, hi;
 
   static f64x4 load(const double* p) { return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)}; }
+  static f64x4 convert(const float* p) {
+    const __m128 floats = _mm_loadu_ps(p);
+    return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
+  }
   static f64x4 broadcast(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
   void store(double* p) const {
     _mm_storeu_pd(p, lo);
@@ -148,6 +176,21 @@ struct f64x4 {
     };
     return {half(_mm_cmplt_pd(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_pd(a.hi, b.hi), x.hi, y.hi)};
   }
+  friend f64x4 mantissa(f64x4 a) {
+    const auto half = [](__m128d x) {
+      const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
+      return _mm_or_pd(_mm_and_pd(x, fraction), _mm_set1_pd(1));
+    };
+    return {half(a.lo), half(a.hi)};
+  }
+  friend f64x4 exponent(f64x4 a) {
+    const auto half = [](__m128d x) {
+      const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(x), 52));
+      return _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)),
+                        _mm_set1_pd(detail::exponent_offset));
+    };
+    return {half(a.lo), half(a.hi)};
+  }
 };
 
 #else
@@ -161,6 +204,11 @@ struct plain_lanes {
   static plain_lanes load(const Scalar* p) {
     plain_lanes out;
     std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static plain_lanes convert(const float* p) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = p[i];
     return out;
   }
   static plain_lanes broadcast(Scalar x) {
@@ -209,6 +257,17 @@ struct plain_lanes {
     plain_lanes out;
     for (std::size_t i = 0; i < Width; ++i) out.v[i] = a.v[i] < b.v[i] ? x.v[i] : y.v[i];
     return out;
+  }
+  friend plain_lanes mantissa(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      const auto bits = std::bit_cast<std::int64_t>(x) & detail::fraction_bits;
+      return std::bit_cast<Scalar>(bits | std::bit_cast<std::int64_t>(Scalar{1}));
+    });
+  }
+  friend plain_lanes exponent(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      return static_cast<Scalar>((std::bit_cast<std::int64_t>(x) >> 52) - 1023);
+    });
   }
 };
 

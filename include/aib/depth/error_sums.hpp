@@ -5,16 +5,17 @@
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
+#include <aib/core/simd.hpp>
 #include <aib/math/log_ratio.hpp>
 #include <aib/raster/view.hpp>
 #include <aib/stats/moments.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
 
 namespace aib::depth {
@@ -89,182 +90,166 @@ void check_sizes(std::string_view function,
     fail("mask", mask.width, mask.height);
 }
 
-namespace detail {
-
 inline namespace AIB_ISA {
 
-/// term(0) + ... + term(size - 1), added in a tree of halves.
-template <std::size_t size, class Term>
-double tree_sum(const Term& term) {
-  if constexpr (size == 1) {
-    return term(0);
-  } else if constexpr (size > 32) {
-    return tree_sum<size / 2>([&](std::size_t i) { return term(i) + term(i + size / 2); });
-  } else {
-    double half[size / 2];
-    for (std::size_t i = 0; i < size / 2; ++i) half[i] = term(i) + term(i + size / 2);
-    return tree_sum<size / 2>([&](std::size_t i) { return half[i]; });
-  }
+/// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
+/// bits.
+class error_adder {
+ public:
+  explicit error_adder(const pixel_rules& rules) : rules_(rules) {}
+
+  /// Adds a row; `mask` is null or as long, of which 0 leaves a pixel out.
+  template <class Estimate, class Reference>
+  void add(std::span<const Estimate> estimate,
+           std::span<const Reference> reference,
+           const std::uint8_t* mask);
+
+  /// The sums of all rows so far.
+  [[nodiscard]] error_sums result() const;
+
+ private:
+  /// Pixels whose log ratios are kept until their mean is known.
+  struct block {
+    static constexpr std::size_t size = 512;
+    f64x4 log_ratio[size / 4];
+    f64x4 weight[size / 4];
+  };
+  /// A pixel that does not count is estimate = reference = 1: all its errors are 0.
+  struct pixels {
+    f64x4 estimate;
+    f64x4 reference;
+    f64x4 weight;  ///< 1 where the pixel counts, else 0
+  };
+
+  pixels select(f64x4 estimate, f64x4 reference, f64x4 inside);
+  f64x4 add(const pixels& p);
+  void add_log_ratios(const block& b, std::size_t n);
+
+  static f64x4 number(double x) { return f64x4::broadcast(x); }
+  static f64x4 is_less(f64x4 a, f64x4 b) { return choose(a, b, number(1), number(0)); }
+  static f64x4 absolute(f64x4 a) { return max(a, number(0) - a); }
+
+  pixel_rules rules_;
+  stats::moments log_ratio_;
+  f64x4 n_reference_ = number(0);
+  f64x4 n_estimate_ = number(0);
+  f64x4 abs_log_ = number(0);
+  f64x4 abs_difference_ = number(0);
+  f64x4 squared_difference_ = number(0);
+  f64x4 abs_relative_ = number(0);
+  f64x4 squared_relative_ = number(0);
+  f64x4 squared_inverse_ = number(0);
+  f64x4 below_delta_[3] = {number(0), number(0), number(0)};
+};
+
+namespace detail {
+
+inline f64x4 load4(const double* p) { return f64x4::load(p); }
+inline f64x4 load4(const float* p) { return f64x4::convert(p); }
+inline f64x4 load4(const std::uint8_t* p) {
+  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
+  return f64x4::load(inside);
 }
 
-}  // namespace AIB_ISA
+/// Four from `p`, of which `n` are there: the others are 0.
+template <class T>
+f64x4 load4(const T* p, std::size_t n) {
+  if (n >= 4) return load4(p);
+  T some[4] = {};
+  std::copy_n(p, n, some);
+  return load4(some);
+}
 
 }  // namespace detail
 
-inline namespace AIB_ISA {
-
-/// Collects pixels and adds them up block by block. The loops run over whole blocks of doubles,
-/// have no branch and sum in a fixed tree: compilers make vector code of them, and every
-/// instruction set gives the same bits.
-class error_block {
- public:
-  static constexpr std::size_t size = 256;
-
-  explicit error_block(const pixel_rules& rules) : rules_(rules) {}
-
-  /// Adds n pixels; `mask` is null or n bytes, of which 0 leaves a pixel out.
-  template <class Estimate, class Reference>
-  void add(const Estimate* estimate,
-           const Reference* reference,
-           const std::uint8_t* mask,
-           std::size_t n);
-
-  /// The sums of all pixels so far.
-  error_sums result();
-
- private:
-  struct column {
-    alignas(64) double values[size];
-    double& operator[](std::size_t i) { return values[i]; }
-    const double& operator[](std::size_t i) const { return values[i]; }
-  };
-
-  template <class Scalar>
-  void take(column& to, const Scalar* from, const std::uint8_t* mask, std::size_t n) const;
-  void flush();
-  void select();
-  [[nodiscard]] error_sums errors();
-
-  pixel_rules rules_;
-  error_sums total_;
-  std::size_t filled_ = 0;
-  column estimate_;
-  column reference_;
-  column weight_;  ///< 1 where the pixel counts, else 0
-  column log_ratio_;
-  column per_estimate_;
-  column per_reference_;
-};
-
 template <class Estimate, class Reference>
-void error_block::add(const Estimate* estimate,
-                      const Reference* reference,
-                      const std::uint8_t* mask,
-                      std::size_t n) {
-  while (n > 0) {
-    const std::size_t k = std::min(n, size - filled_);
-    take(estimate_, estimate, mask, k);
-    take(reference_, reference, mask, k);
-    filled_ += k;
-    if (filled_ == size) flush();
-    estimate += k;
-    reference += k;
-    if (mask) mask += k;
-    n -= k;
+void error_adder::add(std::span<const Estimate> estimate,
+                      std::span<const Reference> reference,
+                      const std::uint8_t* mask) {
+  block b;
+  for (std::size_t first = 0; first < estimate.size(); first += block::size) {
+    const std::size_t n = std::min(block::size, estimate.size() - first);
+    for (std::size_t i = 0; i < n; i += 4) {
+      const std::size_t at = first + i;
+      const f64x4 inside = mask ? detail::load4(mask + at, n - i) : number(1);
+      const pixels p = select(detail::load4(estimate.data() + at, n - i),
+                              detail::load4(reference.data() + at, n - i), inside);
+      b.log_ratio[i / 4] = add(p);
+      b.weight[i / 4] = p.weight;
+    }
+    add_log_ratios(b, n);
   }
 }
 
-template <class Scalar>
-void error_block::take(column& to,
-                       const Scalar* from,
-                       const std::uint8_t* mask,
-                       std::size_t n) const {
-  double* const at = to.values + filled_;
-  for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<double>(from[i]);
-  if (!mask) return;
-  for (std::size_t i = 0; i < n; ++i) at[i] = mask[i] ? at[i] : 0.0;
+/// Applies the rules.
+inline error_adder::pixels error_adder::select(f64x4 raw, f64x4 reference, f64x4 inside) {
+  const f64x4 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
+  f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
+  e = min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
+  // min and max give their second argument, the raw depth, where it is NaN.
+  const f64x4 has_estimate = inside * is_less(zero, min(e, raw)) * is_less(max(e, raw), inf);
+  const f64x4 has_reference =
+      inside * is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
+  n_estimate_ = n_estimate_ + has_estimate;
+  n_reference_ = n_reference_ + has_reference;
+  const f64x4 weight = has_estimate * has_reference;
+  return {.estimate = choose(zero, weight, e, number(1)),
+          .reference = choose(zero, weight, reference, number(1)),
+          .weight = weight};
 }
 
-inline error_sums error_block::result() {
-  if (filled_ > 0) flush();
-  return total_;
-}
-
-inline void error_block::flush() {
-  for (std::size_t i = filled_; i < size; ++i) estimate_[i] = reference_[i] = 0;
-  filled_ = 0;
-  select();
-  total_ += errors();
-}
-
-/// Applies the rules. A pixel that does not count becomes estimate = reference = 1: all its errors
-/// are 0.
-inline void error_block::select() {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  const pixel_rules rules = rules_;
-  column has_estimate, has_reference;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double raw = estimate_[i];
-    const double r = reference_[i];
-    double e = rules.transform.scale * raw + rules.transform.shift;
-    e = e < rules.clamp_min ? rules.clamp_min : e;
-    e = e > rules.clamp_max ? rules.clamp_max : e;
-    const double raw_valid = (raw > 0 ? 1.0 : 0.0) * (raw < inf ? 1.0 : 0.0);
-    const double in_front = (e > 0 ? 1.0 : 0.0) * (e < inf ? 1.0 : 0.0);
-    has_estimate[i] = raw_valid * in_front;
-    has_reference[i] = (r > rules.min ? 1.0 : 0.0) * (r < rules.max ? 1.0 : 0.0);
-    weight_[i] = has_estimate[i] * has_reference[i];
-    estimate_[i] = weight_[i] > 0 ? e : 1.0;
-    reference_[i] = weight_[i] > 0 ? r : 1.0;
-  }
-  const auto count = [](const column& c) {
-    return static_cast<std::uint64_t>(detail::tree_sum<size>([&](std::size_t i) { return c[i]; }));
-  };
-  total_.n_estimate += count(has_estimate);
-  total_.n_reference += count(has_reference);
-}
-
-inline error_sums error_block::errors() {
-  const double clamp_log = rules_.clamp_log;
-  column larger, smaller;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double in_log = estimate_[i] < clamp_log ? clamp_log : estimate_[i];
-    log_ratio_[i] = math::log_ratio(reference_[i], in_log) * weight_[i];
-    per_estimate_[i] = 1 / estimate_[i];
-    per_reference_[i] = 1 / reference_[i];
-    larger[i] = estimate_[i] > reference_[i] ? estimate_[i] : reference_[i];
-    smaller[i] = estimate_[i] > reference_[i] ? reference_[i] : estimate_[i];
-  }
-  const auto sum = [](const auto& term) { return detail::tree_sum<size>(term); };
-  const column& e = estimate_;
-  const column& r = reference_;
-  const double n = sum([&](std::size_t i) { return weight_[i]; });
-  const double mean = n > 0 ? sum([&](std::size_t i) { return log_ratio_[i]; }) / n : 0;
-  const double squares = sum([&](std::size_t i) {
-    const double deviation = (log_ratio_[i] - mean) * weight_[i];
-    return deviation * deviation;
-  });
+/// Adds all but the moments of the log ratios, and returns those.
+inline f64x4 error_adder::add(const pixels& p) {
+  const f64x4 e = p.estimate, r = p.reference;
+  const f64x4 log_ratio = p.weight * math::log_ratio(r, max(e, number(rules_.clamp_log)));
+  const f64x4 per_reference = number(1) / r;
+  const f64x4 difference = absolute(e - r);
+  const f64x4 relative = difference * per_reference;
+  const f64x4 inverse = number(1) / e - per_reference;
+  abs_log_ = abs_log_ + absolute(log_ratio);
+  abs_difference_ = abs_difference_ + difference;
+  squared_difference_ = squared_difference_ + difference * difference;
+  abs_relative_ = abs_relative_ + relative;
+  squared_relative_ = squared_relative_ + difference * relative;
+  squared_inverse_ = squared_inverse_ + inverse * inverse;
   // Without division: 1.25^k is exact in binary, and so is its product with a float.
+  const f64x4 larger = max(e, r), smaller = min(e, r);
   const auto below = [&](double delta) {
-    column is_below;
-    for (std::size_t i = 0; i < size; ++i) is_below[i] = larger[i] < delta * smaller[i] ? 1.0 : 0.0;
-    const double count = sum([&](std::size_t i) { return is_below[i] * weight_[i]; });
-    return static_cast<std::uint64_t>(count);
+    return p.weight * is_less(larger, number(delta) * smaller);
   };
-  return {
-      .log_ratio = stats::moments::from(static_cast<std::uint64_t>(n), mean, squares),
-      .abs_log = sum([&](std::size_t i) { return std::abs(log_ratio_[i]); }),
-      .abs_difference = sum([&](std::size_t i) { return std::abs(e[i] - r[i]); }),
-      .squared_difference = sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]); }),
-      .abs_relative = sum([&](std::size_t i) { return std::abs(e[i] - r[i]) * per_reference_[i]; }),
-      .squared_relative =
-          sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]) * per_reference_[i]; }),
-      .squared_inverse = sum([&](std::size_t i) {
-        const double difference = per_estimate_[i] - per_reference_[i];
-        return difference * difference;
-      }),
-      .below_delta = {below(1.25), below(1.5625), below(1.953125)},
-  };
+  below_delta_[0] = below_delta_[0] + below(1.25);
+  below_delta_[1] = below_delta_[1] + below(1.5625);
+  below_delta_[2] = below_delta_[2] + below(1.953125);
+  return log_ratio;
+}
+
+inline void error_adder::add_log_ratios(const block& b, std::size_t n) {
+  f64x4 counts = number(0), total = number(0), squares = number(0);
+  for (std::size_t i = 0; 4 * i < n; ++i) {
+    counts = counts + b.weight[i];
+    total = total + b.log_ratio[i];
+  }
+  const double count = sum(counts);
+  const double mean = count > 0 ? sum(total) / count : 0;
+  for (std::size_t i = 0; 4 * i < n; ++i) {
+    const f64x4 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
+    squares = squares + deviation * deviation;
+  }
+  log_ratio_ += stats::moments::from(static_cast<std::uint64_t>(count), mean, sum(squares));
+}
+
+inline error_sums error_adder::result() const {
+  const auto count = [](f64x4 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
+  return {.log_ratio = log_ratio_,
+          .n_reference = count(n_reference_),
+          .n_estimate = count(n_estimate_),
+          .abs_log = sum(abs_log_),
+          .abs_difference = sum(abs_difference_),
+          .squared_difference = sum(squared_difference_),
+          .abs_relative = sum(abs_relative_),
+          .squared_relative = sum(squared_relative_),
+          .squared_inverse = sum(squared_inverse_),
+          .below_delta = {count(below_delta_[0]), count(below_delta_[1]), count(below_delta_[2])}};
 }
 
 /// The sums over all pixels of a frame after one transform; nothing is fitted. Bit-identical for
@@ -279,12 +264,10 @@ error_sums sum_errors(raster::view<const Estimate> estimate,
   constexpr std::size_t pixels_a_chunk = 1 << 16;
   const std::size_t rows = estimate.width ? 1 + pixels_a_chunk / estimate.width : 1;
   const auto sums_of = [&](const chunk& c) {
-    error_block block(rules);
-    for (std::size_t y = c.begin; y < c.end; ++y) {
-      block.add(estimate.row(y).data(), reference.row(y).data(),
-                mask.data ? mask.row(y).data() : nullptr, estimate.width);
-    }
-    return block.result();
+    error_adder adder(rules);
+    for (std::size_t y = c.begin; y < c.end; ++y)
+      adder.add(estimate.row(y), reference.row(y), mask.data ? mask.row(y).data() : nullptr);
+    return adder.result();
   };
   const auto combine = [](error_sums total, const error_sums& part) { return total += part; };
   return reduce_chunks(estimate.height, rows, threads, {}, error_sums{}, sums_of, combine);

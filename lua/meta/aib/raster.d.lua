@@ -1,0 +1,40 @@
+---@meta aib.raster
+
+---Images: pictures, and label images, which are masks too (0 is outside). Columns and rows count from 1.
+---@class aib.Raster
+local raster = {}
+
+---A picture of 8-bit red, green and blue.
+---@class aib.Image
+---@field width integer
+---@field height integer
+local image = {}
+
+---Red, green and blue of a pixel.
+---@param column integer
+---@param row integer
+---@return integer[] rgb  # 0..255 each
+function image:at(column, row) end
+
+---A whole number a pixel, 0..65535.
+---@class aib.LabelImage
+---@field width integer
+---@field height integer
+local label_image = {}
+
+---@param column integer
+---@param row integer
+---@return integer label
+function label_image:at(column, row) end
+
+---1 where the image has a label, else 0.
+---@param label integer
+---@return aib.LabelImage mask
+function label_image:mask(label) end
+
+---A label image from its rows: `aib.raster.labels { { 0, 1 }, { 2, 2 } }`.
+---@param rows integer[][]
+---@return aib.LabelImage labels
+function raster.labels(rows) end
+
+return raster

@@ -1,0 +1,65 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+local aib = require "aib"
+
+local function maps()
+  return aib.depth.map { { 2, 2 }, { 1, 0 } }, aib.depth.map { { 1, 4 }, { 1, 1 } }
+end
+
+return aib.test {
+  ["errors of a frame have the names of the C++ fields"] = function(t)
+    local errors = aib.depth.errors(maps())
+    t:near(errors.abs_rel, 0.5, 1e-15)
+    t:near(errors.coverage, 0.75, 0)
+    t:equal(errors.n_reference, 4)
+    t:near(errors.silog, 100 * errors.si_log_rmse, 1e-12)
+  end,
+
+  ["align, bounds and mask are options"] = function(t)
+    local estimate, reference = maps()
+    t:near(aib.depth.errors(estimate, reference:scaled(3), { align = "log" }).scale, 3, 1e-12)
+    t:equal(aib.depth.errors(estimate, reference, { max = 4 }).n_valid, 2)
+    t:equal(aib.depth.errors(estimate, reference, { mask = aib.raster.labels { { 7, 0 }, { 0, 0 } } }).n_valid, 1)
+    t:raises("did you mean 'align'", aib.depth.errors, estimate, reference, { aling = "log" })
+  end,
+
+  ["maps of two sizes are refused with both named"] = function(t)
+    local estimate = maps()
+    t:raises("the estimate is 2x2, the reference 1x1", aib.depth.errors, estimate, aib.depth.map { { 1 } })
+  end,
+
+  ["downsample takes the pixel under the centre, or OpenCV's"] = function(t)
+    local map = aib.depth.map { { 1, 2, 3, 4 } }
+    t:near(aib.depth.downsample(map, 2, 1):at(1, 1), 2, 0)
+    t:near(aib.depth.downsample(map, 2, 1, { rule = "floor" }):at(1, 1), 1, 0)
+    t:raises("column 1..4", map.at, map, 5, 1)
+  end,
+
+  ["an accumulator gives means, pooled errors, frames and an interval"] = function(t)
+    local estimate, reference = maps()
+    local frames = aib.depth.accumulate()
+    frames:add(estimate, reference, { name = "a" }):add(reference, reference, { name = "b" })
+    frames:add(aib.depth.map { { 0 } }, aib.depth.map { { 1 } }, { name = "lost" })
+    local mean, pooled = frames:result(), frames:result { pooled = true }
+    t:equal(#frames, 3)
+    t:equal(mean.undefined, { "lost" })
+    t:near(mean.abs_rel, 0.25, 1e-15)
+    t:near(pooled.abs_rel, 1.5 / 7, 1e-15)
+    t:equal(frames:frames { field = "mae" }[1].name, "a")
+    t:equal(frames:frames()[3].n_valid, 0)
+    local interval = frames:interval { field = "abs_rel", block = 1 }
+    t:check(interval.low <= mean.abs_rel and mean.abs_rel <= interval.high)
+    t:raises("one of srmse", frames.frames, frames, { field = "srms" })
+  end,
+
+  ["a fit over a sequence is a transform of its frames"] = function(t)
+    local estimate, reference = maps()
+    local fit = aib.depth.fit { align = "scale" }
+    fit:add(estimate, reference):add(estimate:scaled(2), reference:scaled(2))
+    local whole = fit:result()
+    t:near(whole.scale, 11 / 9, 1e-12)
+    t:near(aib.depth.errors(estimate, reference, { transform = whole }).scale, whole.scale, 0)
+    t:raises("table with `scale`", aib.depth.errors, estimate, reference, { transform = { 1 } })
+  end,
+}
