@@ -1,0 +1,24 @@
+---@meta aib.progress
+error("Cannot require a meta file")
+
+---Progress of long work on stderr: one line that is redrawn on a terminal, a plain line now and then otherwise.
+---@class aib.progress
+---@field quiet boolean  # nothing is shown
+local progress = {}
+
+---@class aib.Progress
+local instance = {}
+
+---Says that the next of the steps begins.
+---@param what? string
+function instance:step(what) end
+
+---Ends it; `local progress <close> = aib.progress(...)` does so by itself.
+function instance:close() end
+
+---Progress over `total` steps, called `noun`: `aib.progress(#units, "units")` is the same.
+---@param total integer
+---@param noun? string
+---@param sink? table  # { write =, clock =, redraws = } instead of stderr and the clock
+---@return aib.Progress
+function progress.new(total, noun, sink) end

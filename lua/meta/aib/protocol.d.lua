@@ -1,0 +1,46 @@
+---@meta aib.protocol
+error("Cannot require a meta file")
+
+---Protocols: an evaluation with typed inputs, a command line, and results in every format.
+---
+---A script that returns one gets `--help`, typed options, progress, and `--json`, `--csv`, `--markdown`, `--latex` and
+---`--html` for nothing. Exit codes: 0 ok, 1 the script failed, 2 the command line is not understood, 3 an input file is
+---bad, 130 interrupted. A metric that is undefined is a dash with a note.
+
+---One input of a protocol. It is given as `--key value`, by place where it has one, or by name from Lua.
+---@class aib.protocol.Input
+---@field kind "path"|"file"|"folder"|"number"|"integer"|"choice"|"list"|"flag"
+---@field default? any  # an input without one has to be given; a flag is false
+---@field unit? string  # of a number: "5cm" is 0.05 where it is "m"
+---@field min? number
+---@field max? number
+---@field choices? string[]  # of a choice
+---@field of? string  # kind of a list's elements, default "path"
+---@field position? integer  # also given by place; inputs without default are, by name, where none says so
+---@field help? string
+
+---@class aib.protocol.Spec
+---@field name string  # as it is called on the command line
+---@field title? string
+---@field cite? string
+---@field help? string
+---@field inputs? table<string, aib.protocol.Input>
+---@field run fun(input: table, report: aib.Report)
+
+---@class aib.Protocol
+local protocol = {}
+
+---Runs over inputs by name and returns what was found.
+---@param inputs? table
+---@return aib.Report
+function protocol:run(inputs) end
+
+---Runs as a program: prints the report, writes the files that were asked for.
+---@param arguments string[]
+---@return integer exit_code
+function protocol:main(arguments) end
+
+---Makes a protocol; a script returns it. An unknown field or kind is an error with a suggestion.
+---@param spec aib.protocol.Spec
+---@return aib.Protocol
+function aib.protocol(spec) end
