@@ -36,3 +36,5 @@ local benchmark = {}
 ---@param folder string
 ---@return table
 function benchmark.open(folder) end
+
+return benchmark

@@ -16,3 +16,5 @@ function consistency.check(values, rounding) end
 ---@param report aib.Report
 ---@return integer count
 function consistency.check_report(report) end
+
+return consistency

@@ -8,6 +8,7 @@ local files = {}
 ---@class aib.Files
 local instance = {}
 
+---The files of a folder; an io error where it is none.
 ---@param folder string
 ---@return aib.Files
 function files.new(folder) end
@@ -48,3 +49,5 @@ function instance:present(pattern, images) end
 ---What was used: { files =, bytes =, sha256 = } by name, folder or pattern.
 ---@return table<string, table>
 function instance:sources() end
+
+return files

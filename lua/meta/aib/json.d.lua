@@ -26,3 +26,5 @@ function json.list(t) end
 ---@param x number
 ---@return string
 function json.number(x) end
+
+return json

@@ -22,3 +22,5 @@ function instance:close() end
 ---@param sink? table  # { write =, clock =, redraws = } instead of stderr and the clock
 ---@return aib.Progress
 function progress.new(total, noun, sink) end
+
+return progress

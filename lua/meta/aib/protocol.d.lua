@@ -1,12 +1,6 @@
 ---@meta aib.protocol
 error("Cannot require a meta file")
 
----Protocols: an evaluation with typed inputs, a command line, and results in every format.
----
----A script that returns one gets `--help`, typed options, progress, and `--json`, `--csv`, `--markdown`, `--latex` and
----`--html` for nothing. Exit codes: 0 ok, 1 the script failed, 2 the command line is not understood, 3 an input file is
----bad, 130 interrupted. A metric that is undefined is a dash with a note.
-
 ---One input of a protocol. It is given as `--key value`, by place where it has one, or by name from Lua.
 ---@class aib.protocol.Input
 ---@field kind "path"|"file"|"folder"|"number"|"integer"|"choice"|"list"|"flag"
@@ -39,8 +33,3 @@ function protocol:run(inputs) end
 ---@param arguments string[]
 ---@return integer exit_code
 function protocol:main(arguments) end
-
----Makes a protocol; a script returns it. An unknown field or kind is an error with a suggestion.
----@param spec aib.protocol.Spec
----@return aib.Protocol
-function aib.protocol(spec) end

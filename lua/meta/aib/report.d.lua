@@ -72,3 +72,5 @@ function instance:records() end
 ---@param info table  # name, title, cite, version
 ---@return aib.Report
 function report.new(info) end
+
+return report

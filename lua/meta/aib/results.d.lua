@@ -15,3 +15,5 @@ function results.read(path) end
 ---@param b table
 ---@return string|nil
 function results.difference(a, b) end
+
+return results

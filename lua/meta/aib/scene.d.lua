@@ -32,3 +32,5 @@ function scene.cropped(of, cloud) end
 ---@param name string
 ---@return aib.Cloud
 function scene.read_cloud(files, name) end
+
+return scene

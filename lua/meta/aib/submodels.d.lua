@@ -14,3 +14,5 @@ function submodels.read(folder) end
 ---@param models table[]
 ---@return table|nil
 function submodels.largest(models) end
+
+return submodels

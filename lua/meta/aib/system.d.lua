@@ -5,10 +5,12 @@ error("Cannot require a meta file")
 ---@class aib.system
 local system = {}
 
+---Whether there is a regular file.
 ---@param path string
 ---@return boolean
 function system.is_file(path) end
 
+---Whether there is a folder.
 ---@param path string
 ---@return boolean
 function system.is_folder(path) end
@@ -18,6 +20,7 @@ function system.is_folder(path) end
 ---@return string[]
 function system.names_in(folder) end
 
+---The whole content of a file.
 ---@param path string
 ---@return string
 function system.read_text(path) end
@@ -37,6 +40,7 @@ function system.fingerprint(path) end
 ---@return string
 function system.sha256(text) end
 
+---Whether a stream is a terminal.
 ---@param stream "stdout"|"stderr"
 ---@return boolean
 function system.is_terminal(stream) end
@@ -56,3 +60,5 @@ function system.suggestion(name, known) end
 ---@param kind "argument"|"format"|"io"|"undefined"|"stopped"|"internal"
 ---@param text string
 function system.remember(kind, text) end
+
+return system
