@@ -27,6 +27,7 @@ sol2-dev             module sol2 3.3
 zlib1g-dev           module zlib
 libdeflate-dev       module libdeflate
 libspng-dev          module spng
+libjpeg-dev          module libjpeg
 nlohmann-json3-dev   module nlohmann_json
 libpugixml-dev       module pugixml
 libedit-dev          module libedit

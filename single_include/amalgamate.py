@@ -45,6 +45,7 @@ OPTIONAL = {
     "zlib.h": "defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)",
     "libdeflate.h": "defined(AIB_WITH_LIBDEFLATE)",
     "spng.h": "defined(AIB_WITH_PNG)",
+    "jpeglib.h": "defined(AIB_WITH_JPEG)",
     "nlohmann/": "defined(AIB_WITH_JSON)",
     "pugixml.hpp": "defined(AIB_WITH_XML)",
     "embree": "defined(AIB_WITH_EMBREE)",

@@ -19,6 +19,7 @@ LIBRARIES = {
     "zlib.h": ["AIB_WITH_EXR", "AIB_WITH_NPZ"],
     "libdeflate.h": ["AIB_WITH_LIBDEFLATE"],
     "spng.h": ["AIB_WITH_PNG"],
+    "jpeglib.h": ["AIB_WITH_JPEG"],
     "nlohmann/json.hpp": ["AIB_WITH_JSON"],
     "pugixml.hpp": ["AIB_WITH_XML"],
 }
