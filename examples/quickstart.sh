@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 
 examples/setup.sh shell
 echo "quickstart: building aib-lua for this machine's own instruction set (-Dsimd=native)"
-ninja --quiet -C build lua/aib-lua
+ninja -C build lua/aib-lua
 build/lua/aib-lua examples/protocols/asset_inspection.lua examples/data --json build/quickstart.json
 
 cat <<'END'

@@ -76,7 +76,7 @@ def main(log_folder, *flags):
         suites.setdefault(suite_of(test), Tally()).__iadd__(tally)
         total += tally
         if tally.failed:
-            print(f"FAILED {test['name']} ({test['result']})")
+            print(f"FAILED {test['name']} ({test['result']}, exit code {test['returncode']})")
             print(tail(test.get("stdout", "") + test.get("stderr", "")))
     if not tests:
         print("FAILED build: no test was run")
