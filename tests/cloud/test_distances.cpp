@@ -66,7 +66,7 @@ TEST_CASE("beyond the maximum a distance is dropped or clamped, as asked") {
     CHECK(d.share_below(1.5) == doctest::Approx(1 / 3.0));
   }
   SUBCASE("clamp") {
-    const cloud::distances d(a, b, {.max_distance = 2, .beyond = cloud::beyond_rule::clamp});
+    const cloud::distances d(a, b, {.max_distance = 2, .rule = cloud::maximum_rule::clamp});
     CHECK(d.mean() == doctest::Approx(5 / 3.0));
     CHECK(d.max() == 2);
     CHECK(d.median() == 2);

@@ -17,7 +17,7 @@ namespace aib::cloud {
 struct compare_options {
   std::vector<double> tau = {};             ///< thresholds of precision, recall and F-score
   std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  beyond_rule beyond = beyond_rule::drop;
+  maximum_rule rule = maximum_rule::drop;
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
@@ -124,7 +124,7 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                                         const compare_options& options = {}) {
   const auto both = distances_both_ways(estimate, reference,
                                         {.max_distance = options.max_distance,
-                                         .beyond = options.beyond,
+                                         .rule = options.rule,
                                          .threads = options.threads,
                                          .control = options.control});
   return score(both.to_reference, both.to_estimate, options.tau);

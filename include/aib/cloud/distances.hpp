@@ -22,14 +22,14 @@
 namespace aib::cloud {
 
 /// What becomes of a distance that is not below the maximum.
-enum class beyond_rule {
+enum class maximum_rule {
   drop,   ///< left out of all statistics but shares (DTU)
   clamp,  ///< counts as the maximum (CloudCompare)
 };
 
 struct distance_options {
   std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  beyond_rule beyond = beyond_rule::drop;
+  maximum_rule rule = maximum_rule::drop;
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
@@ -155,7 +155,7 @@ inline distances::distances(std::vector<float> values, const distance_options& o
 
 inline void distances::apply_maximum() {
   if (!options_.max_distance) return;
-  const bool drop = options_.beyond == beyond_rule::drop;
+  const bool drop = options_.rule == maximum_rule::drop;
   const float beyond =
       drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
   for (float& value : values_) {
@@ -171,7 +171,7 @@ inline void distances::summarize() {
     std::size_t dropped = 0;
     double sum = 0, squares = 0, max = 0;
   };
-  const bool skip_infinite = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
   const auto sum_chunk = [&](const chunk& c) {
     sums s;
     for (std::size_t i = c.begin; i < c.end; ++i) {
@@ -197,7 +197,7 @@ inline void distances::summarize() {
 }
 
 inline std::size_t distances::n_counted() const {
-  const bool drop = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const bool drop = options_.max_distance && options_.rule == maximum_rule::drop;
   return n_finite() - (drop ? n_beyond_ : 0);
 }
 
