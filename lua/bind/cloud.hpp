@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/cloud/box.hpp>
+#include <aib/cloud/compare.hpp>
+#include <aib/cloud/distances.hpp>
+
+#include "kit.hpp"
+#include <cstddef>
+#include <string>
+
+namespace aib::bind {
+
+// What the bindings of clouds and of meshes share; defined in cloud.cpp.
+
+/// 1204331 as "1 204 331".
+std::string grouped(std::size_t n);
+
+/// ", bbox 12.1 x 8.0 x 3.2 m", nothing for an empty box.
+std::string extent_text(const cloud::box& box);
+
+/// { min = {x, y, z}, max = {x, y, z} }, as aib.cloud.crop takes it.
+record as_record(lua_State* state, const cloud::box& box);
+
+record as_record(lua_State* state, const cloud::comparison& c);
+
+/// max_distance and rule.
+cloud::distance_options distance_options(options& o, const session& s);
+
+}  // namespace aib::bind
