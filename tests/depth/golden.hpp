@@ -12,6 +12,12 @@
 #include <aib/io/npz.hpp>
 #endif
 
+#ifdef AIB_WITH_PNG
+#include <aib/io/png.hpp>
+#endif
+
+#include <aib/io/depth.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -37,6 +43,23 @@ inline std::optional<raster::image<double>> read_map(const std::string& name) {
   if (path.extension() == ".npz") {
     const io::npz_file file(path);
     return image_of(file.read(file.names().front()));
+  }
+#endif
+#ifdef AIB_WITH_PNG
+  if (path.extension() == ".png") {  // millimetres; divided in double, as NumPy does
+    const auto stored = io::read_png_gray(path);
+    raster::image<double> image(stored.width(), stored.height());
+    std::transform(stored.begin(), stored.end(), image.begin(),
+                   [](auto mm) { return mm / 1000.0; });
+    return image;
+  }
+#endif
+#ifdef AIB_WITH_EXR
+  if (path.extension() == ".exr" || path.extension() == ".pfm") {
+    const auto map = io::read_depth(path).values;
+    raster::image<double> image(map.width(), map.height());
+    std::copy(map.begin(), map.end(), image.begin());
+    return image;
   }
 #endif
   return std::nullopt;

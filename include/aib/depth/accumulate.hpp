@@ -4,8 +4,10 @@
 
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
+#include <aib/depth/crop.hpp>
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/errors.hpp>
+#include <aib/depth/fit.hpp>
 #include <aib/raster/image.hpp>
 #include <aib/raster/view.hpp>
 
@@ -82,27 +84,51 @@ struct frame {
   raster::image<std::uint8_t> mask = {};
 };
 
+/// What one fit of scale and shift is over.
+enum class scope { frame, sequence };
+
 struct accumulate_options {
   error_options errors = {};
-  unsigned threads = 0;  ///< 0: all; so many frames are in memory at a time
+  scope align_over = scope::frame;  ///< sequence: one fit over all frames, which are loaded twice
+  unsigned threads = 0;             ///< 0: all; so many frames are in memory at a time
   aib::control control = {};
 };
+
+/// One fit of scale and shift over the frames that `load` gives, see accumulate.
+template <class Load>
+[[nodiscard]] affine fit_frames(std::size_t n, const accumulate_options& options, Load load) {
+  const auto fit_of = [&](const chunk& c) {
+    const frame f = load(c.begin);
+    fitter one(options.errors.align, rules_of(options.errors));
+    one.add(cropped(f.estimate.values.view(), options.errors.crop),
+            cropped(f.reference.values.view(), options.errors.crop),
+            cropped(f.mask.view(), options.errors.crop));
+    return one;
+  };
+  const auto combine = [](fitter total, const fitter& part) { return total += part; };
+  return reduce_chunks(n, 1, options.threads, options.control, fitter(), fit_of, combine).result();
+}
 
 /// Loads frames 0 .. n - 1 by `load(i) -> frame`, from several threads at a time, and accumulates
 /// them in order: the result does not depend on the number of threads. What `load` throws is thrown
 /// here.
 template <class Load>
 [[nodiscard]] accumulator accumulate(std::size_t n, const accumulate_options& options, Load load) {
+  error_options errors = options.errors;
+  if (options.align_over == scope::sequence && errors.align != alignment::none) {
+    errors.transform = fit_frames(n, options, load);
+    errors.align = alignment::none;
+  }
   const auto errors_of = [&](const chunk& c) {
-    accumulator one(options.errors);
+    accumulator one(errors);
     frame f = load(c.begin);
     one.add(std::move(f.name), std::as_const(f.estimate.values).view(),
             std::as_const(f.reference.values).view(), std::as_const(f.mask).view());
     return one;
   };
   const auto combine = [](accumulator total, const accumulator& part) { return total += part; };
-  return reduce_chunks(n, 1, options.threads, options.control, accumulator(options.errors),
-                       errors_of, combine);
+  return reduce_chunks(n, 1, options.threads, options.control, accumulator(errors), errors_of,
+                       combine);
 }
 
 template <class Estimate, class Reference>
@@ -112,11 +138,8 @@ void accumulator::add(std::string name,
                       raster::view<const std::uint8_t> mask) {
   error_options options = options_;
   options.mask = mask;
-  frame_record record{.name = std::move(name)};
-  record.transform = frame_transform(estimate, reference, options);
-  pixel_rules rules = rules_of(options);
-  rules.transform = record.transform;
-  record.sums = sum_errors(estimate, reference, rules, mask, options.threads);
+  const frame_sums measured = measure(estimate, reference, options);
+  frame_record record{std::move(name), measured.sums, measured.transform};
   if (record.sums.log_ratio.count() > 0) record.errors = summarize(record.sums, record.transform);
   frames_.push_back(std::move(record));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/error.hpp>
+#include <aib/depth/crop.hpp>
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/error_sums.hpp>
 #include <aib/depth/fit.hpp>
@@ -24,6 +25,7 @@ struct error_options {
   double min = 0;                                        ///< a reference counts above it, exclusive
   double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
   raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  crop_rule crop = crop_rule::none;                      ///< the rest is left out
   affine transform = {};  ///< of a batch or sequence (see fitter), where nothing is aligned here
   double clamp_min = 0;   ///< smaller estimates become this
   double clamp_max = std::numeric_limits<double>::infinity();  ///< larger ones this
@@ -141,30 +143,40 @@ inline error_summary summarize(const error_sums& sums, const affine& transform) 
   };
 }
 
-/// What takes the estimates of a frame to its references: the fit that the options ask for, or
-/// their transform. Throws argument_error if they have both. A frame without a valid pixel has the
-/// identity.
+/// The sums of a frame, and what took its estimates to its references: the fit that the options ask
+/// for, or their transform.
+struct frame_sums {
+  error_sums sums;
+  affine transform = {};
+};
+
+/// A frame without a valid pixel has the identity for a fit. Throws argument_error if the sizes
+/// differ, or if the options have both a fit and a transform.
 template <class Estimate, class Reference>
-affine frame_transform(raster::view<const Estimate> estimate,
-                       raster::view<const Reference> reference,
-                       const error_options& options) {
-  if (options.align == alignment::none) return options.transform;
-  if (options.transform != affine{}) {
-    throw argument_error("depth::errors: either `align` or `transform` expected, found both");
+frame_sums measure(raster::view<const Estimate> estimate,
+                   raster::view<const Reference> reference,
+                   const error_options& options) {
+  check_sizes("depth::errors", estimate, reference, options.mask);
+  estimate = cropped(estimate, options.crop);
+  reference = cropped(reference, options.crop);
+  const raster::view<const std::uint8_t> mask = cropped(options.mask, options.crop);
+  pixel_rules rules = rules_of(options);
+  if (options.align != alignment::none) {
+    if (options.transform != affine{})
+      throw argument_error("depth::errors: either `align` or `transform` expected, found both");
+    fitter fit(options.align, rules);
+    fit.add(estimate, reference, mask);
+    if (fit.n_valid() > 0) rules.transform = fit.result();
   }
-  fitter fit(options.align, rules_of(options));
-  fit.add(estimate, reference, options.mask);
-  return fit.n_valid() ? fit.result() : affine{};
+  return {sum_errors(estimate, reference, rules, mask, options.threads), rules.transform};
 }
 
 template <class Estimate, class Reference>
 error_summary errors(raster::view<const Estimate> estimate,
                      raster::view<const Reference> reference,
                      const error_options& options) {
-  pixel_rules rules = rules_of(options);
-  rules.transform = frame_transform(estimate, reference, options);
-  return summarize(sum_errors(estimate, reference, rules, options.mask, options.threads),
-                   rules.transform);
+  const frame_sums frame = measure(estimate, reference, options);
+  return summarize(frame.sums, frame.transform);
 }
 
 template <class Estimate, class Reference>

@@ -34,7 +34,8 @@ enum class alignment {
 class fitter {
  public:
   /// Only the validity of `rules` is used: min and max of the reference.
-  explicit fitter(alignment kind, const pixel_rules& rules = {}) : kind_(kind), rules_(rules) {}
+  explicit fitter(alignment kind = alignment::none, const pixel_rules& rules = {})
+      : kind_(kind), rules_(rules) {}
 
   /// Throws argument_error if the sizes differ.
   template <class Estimate, class Reference>
@@ -42,6 +43,8 @@ class fitter {
            raster::view<const Reference> reference,
            raster::view<const std::uint8_t> mask = {});
 
+  /// A fitter of nothing (alignment::none) becomes the other. Throws argument_error if kinds
+  /// differ.
   fitter& operator+=(const fitter& other);
 
   /// Pixels valid in both maps, 0 for alignment::none.
@@ -149,6 +152,7 @@ inline fitter::pair_moments& fitter::pair_moments::operator+=(const pair_moments
 }
 
 inline fitter& fitter::operator+=(const fitter& other) {
+  if (kind_ == alignment::none) return *this = other;
   if (other.kind_ != kind_) throw argument_error("depth::fitter: merged fits differ in kind");
   log_ratio_ += other.log_ratio_;
   pairs_ += other.pairs_;
