@@ -8,6 +8,7 @@
 
 #include <fstream>
 #include <string>
+#include <support/pose_distance.hpp>
 #include <support/scratch.hpp>
 #include <support/shared.hpp>
 #include <vector>
@@ -314,9 +315,8 @@ TEST_CASE("a model's text and binary files say the same") {
     CHECK(a.points.size() == b.points.size());
     CHECK(a.cameras.begin()->second.parameters == b.cameras.begin()->second.parameters);
     for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
-      CHECK(
-          (a.trajectory.world_from_camera[i].matrix() - b.trajectory.world_from_camera[i].matrix())
-              .norm() < 1e-12);
+      CHECK(support::distance(a.trajectory.world_from_camera[i],
+                              b.trajectory.world_from_camera[i]) < 1e-12);
     }
   }
 }

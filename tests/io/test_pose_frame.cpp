@@ -5,9 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <support/pose_distance.hpp>
 
 using namespace aib;
 using namespace aib::io;
+using support::distance;
 
 namespace {
 
@@ -18,10 +20,6 @@ const math::rigid3 world_from_camera{math::rotation_from(Eigen::Vector3d(0.3, -0
                                      {4, -5, 6}};
 
 pose_matrix upper(const math::rigid3& pose) { return pose.matrix().topRows<3>(); }
-
-double distance(const math::rigid3& a, const math::rigid3& b) {
-  return (a.matrix() - b.matrix()).norm();
-}
 
 }  // namespace
 

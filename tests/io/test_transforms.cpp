@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <string>
+#include <support/pose_distance.hpp>
 #include <support/scratch.hpp>
 #include <support/shared.hpp>
 #include <vector>
@@ -132,9 +133,8 @@ TEST_CASE("poses and intrinsics come back from the transforms.json that we write
   io::write_transforms(path, images);
   const auto back = io::read_transforms(path);
   CHECK(back.trajectory.names == std::vector<std::string>{"a.png", "b.png"});
-  CHECK((back.trajectory.world_from_camera[0].matrix() -
-         images.trajectory.world_from_camera[0].matrix())
-            .norm() < 1e-15);
+  CHECK(support::distance(back.trajectory.world_from_camera[0],
+                          images.trajectory.world_from_camera[0]) < 1e-15);
   CHECK(back.cameras[0].parameters == images.cameras[0].parameters);
   CHECK(back.cameras[1].model == math::camera_model::opencv_fisheye);
   CHECK(back.cameras[1].parameters == images.cameras[2].parameters);
@@ -163,9 +163,8 @@ TEST_CASE("the scenes' transforms.json and TUM files hold the same poses") {
     const auto b = io::read_tum(folder / "poses" / "poses.tum");
     REQUIRE(a.size() == b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const Eigen::Matrix4d difference =
-          a.world_from_camera[i].matrix() - b.world_from_camera[i].matrix();
-      CHECK(difference.norm() < 1e-6);  // matrices of floats, quaternions of 9 digits
+      // matrices of floats, quaternions of 9 digits
+      CHECK(support::distance(a.world_from_camera[i], b.world_from_camera[i]) < 1e-6);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -67,11 +68,24 @@ inline constexpr std::array<pose_format_name, 12> pose_format_names{{
 
 namespace detail {
 
+/// The folder with an NPZ file for each image: `folder` or its folder `camera`; empty where there
+/// is none.
+inline std::filesystem::path folder_of_npz(const std::filesystem::path& folder) {
+  for (const std::filesystem::path& candidate : {folder, folder / "camera"}) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(candidate, ignored)) {
+      if (entry.path().extension() == ".npz") return candidate;
+    }
+  }
+  return {};
+}
+
 inline std::optional<pose_format> format_of_folder(const std::filesystem::path& folder) {
   if (!find_colmap_models(folder).empty()) return pose_format::colmap;
   if (std::filesystem::exists(folder / "camera_poses.txt")) return pose_format::da3;
   if (std::filesystem::exists(folder / "transforms.json")) return pose_format::transforms;
   if (std::filesystem::exists(folder / "reconstruction.json")) return pose_format::opensfm;
+  if (!folder_of_npz(folder).empty()) return pose_format::npz;
   return std::nullopt;
 }
 
@@ -113,6 +127,13 @@ inline std::optional<pose_format> format_of_text(std::string_view text,
   return format_of_rows(first, second);
 }
 
+/// The beginning of the first line with content, for a message.
+inline std::string_view first_words(std::string_view text, const std::filesystem::path& path) {
+  constexpr std::size_t enough = 60;
+  line_reader lines(text, path);
+  return lines.next_content() ? lines.line().substr(0, enough) : std::string_view();
+}
+
 inline std::optional<pose_format> format_of_content(std::string_view text,
                                                     const std::filesystem::path& path) {
   if (text.starts_with("\x93NUMPY")) return pose_format::npy;
@@ -146,8 +167,8 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) {
     if (const auto format = detail::format_of_folder(path)) return *format;
     throw format_error(path,
-                       "a COLMAP model (cameras, images), camera_poses.txt, transforms.json or "
-                       "reconstruction.json expected in the folder, found none");
+                       "a COLMAP model (cameras, images), camera_poses.txt, transforms.json, "
+                       "reconstruction.json or NPZ files expected in the folder, found none");
   }
   if (detail::is_colmap_file(path)) return pose_format::colmap;
   constexpr std::size_t enough = 1 << 16;
@@ -159,8 +180,9 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
   std::string names;
   for (const auto& known : pose_format_names)
     names += message(names.empty() ? "" : ", ", known.name);
-  throw format_error(
-      path, message("the format of the poses cannot be told; give one as format: ", names));
+  throw format_error(path,
+                     message("the format of the poses cannot be told from '",
+                             detail::first_words(begin, path), "'; give one as format: ", names));
 }
 
 }  // namespace aib::io

@@ -7,6 +7,7 @@
 #include <aib/io/pose_arrays.hpp>
 #include <aib/io/pose_frame.hpp>
 #include <aib/io/posed_images.hpp>
+#include <aib/io/trajectory_check.hpp>
 
 #include <algorithm>
 #include <array>
@@ -53,6 +54,12 @@ inline constexpr std::array<pose_key, 8> pose_keys{{
 /// Throws argument_error where no array of poses is found or its convention is not known.
 [[nodiscard]] posed_images read_pose_npz(const std::filesystem::path& path,
                                          const pose_npz_options& options = {});
+
+/// What CUT3R leaves in a folder `camera`: an NPZ file with one pose (and intrinsics) for each
+/// image. The images are named by the files' stems, in their order. Throws format_error where there
+/// is none or one of them has more than one pose.
+[[nodiscard]] posed_images read_pose_npz_folder(const std::filesystem::path& folder,
+                                                const pose_npz_options& options = {});
 
 namespace detail {
 
@@ -133,6 +140,27 @@ inline posed_images read_pose_npz(const std::filesystem::path& path,
                 " intrinsics belong to a larger image than the depth maps: scaled to these"));
   }
   return images;
+}
+
+inline posed_images read_pose_npz_folder(const std::filesystem::path& folder,
+                                         const pose_npz_options& options) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".npz") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  posed_images all;
+  for (const std::filesystem::path& file : files) {
+    const posed_images one = read_pose_npz(file, options);
+    if (one.trajectory.size() != 1)
+      throw format_error(file, message("one pose expected, found ", one.trajectory.size()));
+    all.trajectory.names.push_back(file.stem().string());
+    all.trajectory.world_from_camera.push_back(one.trajectory.world_from_camera.front());
+    all.cameras.insert(all.cameras.end(), one.cameras.begin(), one.cameras.end());
+  }
+  if (all.cameras.size() != files.size()) all.cameras.clear();
+  all.trajectory = checked_trajectory(std::move(all.trajectory), folder, "npz");
+  return all;
 }
 
 }  // namespace aib::io

@@ -105,9 +105,11 @@ inline posed_images read_reality_capture(const std::filesystem::path& path,
   posed_images images;
   bool left_out = false;
   while (table.next()) {
+    const double heading = table.number("heading");
+    const double pitch = table.number("pitch");
+    const double roll = table.number("roll");
     pose_matrix matrix;
-    matrix.leftCols<3>() = detail::rotation_of_angles(table.number("heading"),
-                                                      table.number("pitch"), table.number("roll"));
+    matrix.leftCols<3>() = detail::rotation_of_angles(heading, pitch, roll);
     matrix.col(3) << table.number("x"), table.number("y"), table.number("alt");
     images.trajectory.names.emplace_back(table.text("name"));
     images.trajectory.world_from_camera.push_back(

@@ -66,6 +66,7 @@ struct trajectory_options {
 /// metashape          cameras.xml                                its own
 /// reality_capture    csv of internal and external parameters    its own
 /// npy, npz           N x 4 x 4 or N x 3 x 4                     as told, opencv
+/// npz                a folder of them, one an image (CUT3R)     as told, opencv
 ///
 /// Throws io_error, format_error as the readers do; argument_error where an option does not fit the
 /// format or the number of names is not that of the poses.
@@ -162,7 +163,9 @@ class pose_reader {
 
 #ifdef AIB_WITH_NPZ
   posed_images from_npz() const {
-    return read_pose_npz(path_, {options_.key, options_.convention, frame().axes});
+    const pose_npz_options npz{options_.key, options_.convention, frame().axes};
+    if (!std::filesystem::is_directory(path_)) return read_pose_npz(path_, npz);
+    return read_pose_npz_folder(folder_of_npz(path_), npz);
   }
 #else
   posed_images from_npz() const { needs_library(path_, "NPZ", "zlib"); }
