@@ -49,8 +49,10 @@ local function score_angles(model, truth, input, cell)
     cell:add("pose.auc30", auc.auc, how)
     cell:add("pose.auc30_signed", auc.auc_signed, how)
     cell:add("pose.n_zero_baseline", auc.n_zero_baseline, { n = auc.n_pairs })
-    local joint = aib.pose.auc(model.est, model.ref, { convention = "exact" })
-    cell:add("pose.auc30_joint", joint.auc, { better = "higher", n = joint.n_pairs, convention = "exact" })
+    if input.auc == "paper" then  -- of both errors at once: at most what the paper counts of each
+      local joint = aib.pose.auc(est, ref, { convention = "exact" })
+      cell:add("pose.auc30_joint", joint.auc, { better = "higher", n = joint.n_pairs, convention = "exact" })
+    end
   else
     cell:add("pose.auc30", nil, { better = "higher" })
   end
@@ -203,7 +205,7 @@ local function add_tables(report, input)
   report:table { title = ("Poses, AUC30 (%s)"):format(input.auc), metrics = { "pose.auc30" } }
   report:table {
     title = "Registered images", metrics = { { "pose.registration_rate", percent = true } },
-    beside = { { field = "n" } },
+    beside = { { field = "n" } }, notes = { "Beside it: images expected." },
   }
   report:table { title = "Focal length, mean relative error", metrics = { { "camera.focal_mre", percent = true } } }
   report:table { title = "Points, chamfer distance", metrics = { "cloud.chamfer" } }
