@@ -174,8 +174,8 @@ TEST_CASE("poses that are not finite are passed over, and nothing is undefined")
 TEST_CASE("evo's alignments, outlier removal and batches") {
   if (!support::has_shared("align")) return;
   const auto folder = support::shared() / "golden";
-  for (const auto& c : support::read_json(folder / "manifest.json").at("cases")) {
-    if (c.at("kind") != "trajectory" || !c.at("inputs").contains("est")) continue;
+  for (const auto& c : support::golden_cases("trajectory")) {
+    if (!c.at("inputs").contains("est")) continue;
     const std::string id = c.at("id");
     CAPTURE(id);
     const auto json = support::read_json(folder / c.at("expected_file").get<std::string>());

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace aib::support {
 
@@ -19,6 +20,16 @@ namespace aib::support {
 inline nlohmann::json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
   return nlohmann::json::parse(file);
+}
+
+/// The cases of one kind in the list of expected numbers.
+inline std::vector<nlohmann::json> golden_cases(const std::string& kind) {
+  const nlohmann::json manifest = read_json(shared() / "golden" / "manifest.json");
+  std::vector<nlohmann::json> out;
+  for (const auto& c : manifest.at("cases")) {
+    if (c.at("kind") == kind) out.push_back(c);
+  }
+  return out;
 }
 
 /// A stack of 4 x 4 world-to-camera matrices, projected to rotations.

@@ -136,8 +136,8 @@ TEST_CASE("by index the shorter list decides") {
 TEST_CASE("evo's association, repeated") {
   if (!support::has_shared("associate")) return;
   const auto folder = support::shared() / "golden";
-  for (const auto& c : support::read_json(folder / "manifest.json").at("cases")) {
-    if (c.at("kind") != "trajectory" || !c.at("inputs").contains("est")) continue;
+  for (const auto& c : support::golden_cases("trajectory")) {
+    if (!c.at("inputs").contains("est")) continue;
     const std::string id = c.at("id");
     CAPTURE(id);
     const auto estimate = io::read_tum(folder / c.at("inputs").at("est").get<std::string>());

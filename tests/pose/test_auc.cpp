@@ -63,8 +63,7 @@ double colmap_area(std::vector<double> errors, double limit) {
 TEST_CASE("auc of expected files: direct formulas and the projects' own functions") {
   if (!support::has_shared("auc")) return;
   const auto folder = support::shared() / "golden";
-  for (const auto& c : support::read_json(folder / "manifest.json").at("cases")) {
-    if (c.at("kind") != "pose_auc") continue;
+  for (const auto& c : support::golden_cases("pose_auc")) {
     const std::string id = c.at("id");
     CAPTURE(id);
     const auto json = support::read_json(folder / c.at("expected_file").get<std::string>());

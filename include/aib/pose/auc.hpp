@@ -59,8 +59,7 @@ namespace detail {
 /// The frames in the form that makes frame_pairs' E_i E_j^-1 the relative pose of a convention.
 inline registered_frames frames_for(auc_convention convention, registered_frames frames) {
   for (auto* poses : {&frames.estimate, &frames.reference}) {
-    if (convention == auc_convention::posediffusion ||
-        convention == auc_convention::posediffusion_torch) {
+    if (reverses(convention)) {
       std::reverse(poses->begin(), poses->end());  // E_j E_i^-1
     } else if (convention == auc_convention::da3) {
       // E_i^-1 E_j of E_i E_0^-1 is the relative pose of the inverse poses.

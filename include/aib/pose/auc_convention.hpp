@@ -42,6 +42,11 @@ inline constexpr std::array<std::string_view, 7> auc_convention_names = {
          c == auc_convention::posediffusion_torch || c == auc_convention::da3;
 }
 
+/// Whether a convention's relative pose is E_j E_i^-1: that of the frames in reverse.
+[[nodiscard]] constexpr bool reverses(auc_convention c) {
+  return c == auc_convention::posediffusion || c == auc_convention::posediffusion_torch;
+}
+
 /// Whether a convention is a mean over thresholds, so that counts of pairs suffice.
 [[nodiscard]] constexpr bool is_binned(auc_convention c) {
   return c == auc_convention::paper || folds(c);

@@ -54,23 +54,29 @@ inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_option
   return out;
 }
 
+/// Of every place on a path but the last the one whose distance is nearest to delta, the earlier of
+/// two, where it misses it by at most a share of delta.
+inline std::vector<frame_pair> nearest_along_path(std::span<const double> path,
+                                                  double delta,
+                                                  double tolerance) {
+  std::vector<frame_pair> out;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const auto first = path.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto miss = [&](auto at) { return std::abs(*at - path[i] - delta); };
+    auto best = std::lower_bound(first, path.end(), path[i] + delta);
+    if (best == path.end() || (best != first && miss(best - 1) <= miss(best))) --best;
+    best = std::lower_bound(first, best, *best);  // of equal ones the first
+    if (miss(best) <= tolerance * delta)
+      out.push_back({i, static_cast<std::size_t>(best - path.begin())});
+  }
+  return out;
+}
+
 inline std::vector<frame_pair> pairs_by_path(std::span<const math::rigid3> poses,
                                              const delta_options& options) {
-  const std::vector<double> length = path_lengths(poses);
+  if (options.all_pairs)
+    return nearest_along_path(path_lengths(poses), options.delta, options.tolerance);
   std::vector<frame_pair> out;
-  if (options.all_pairs) {
-    for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-      const double goal = length[i] + options.delta;
-      const auto first = length.begin() + static_cast<std::ptrdiff_t>(i) + 1;
-      auto best = std::lower_bound(first, length.end(), goal);
-      const auto miss = [&](auto at) { return std::abs(*at - length[i] - options.delta); };
-      if (best == length.end() || (best != first && miss(best - 1) <= miss(best))) --best;
-      best = std::lower_bound(first, best, *best);  // of equal ones the first
-      if (miss(best) <= options.tolerance * options.delta)
-        out.push_back({i, static_cast<std::size_t>(best - length.begin())});
-    }
-    return out;
-  }
   std::vector<std::size_t> stops;  // as evo: the first pair begins at the first stop, not at 0
   double since = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {

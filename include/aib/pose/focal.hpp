@@ -32,6 +32,11 @@ struct focal_error_result {
   std::vector<double> each;  ///< relative error of each
 };
 
+[[nodiscard]] inline bool same_camera(const math::camera& a, const math::camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         a.parameters == b.parameters;
+}
+
 /// Focal length of a camera as it would be for an image of another size: fx goes with the width, fy
 /// with the height; their mean. Pixels. Throws argument_error where a model has no focal length.
 inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uint64_t height) {
@@ -47,15 +52,11 @@ inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uin
 /// Throws undefined_error if there is no view, argument_error where a model has no focal length.
 inline focal_error_result focal_error(std::span<const camera_pair> views,
                                       focal_over over = focal_over::views) {
-  const auto same = [](const math::camera& a, const math::camera& b) {
-    return a.model == b.model && a.width == b.width && a.height == b.height &&
-           a.parameters == b.parameters;
-  };
   focal_error_result out{0, 0, {}};
   std::vector<const camera_pair*> counted;
   for (const camera_pair& view : views) {
     const auto is_view = [&](const camera_pair* c) {
-      return same(c->estimate, view.estimate) && same(c->reference, view.reference);
+      return same_camera(c->estimate, view.estimate) && same_camera(c->reference, view.reference);
     };
     if (over == focal_over::cameras) {
       if (std::any_of(counted.begin(), counted.end(), is_view)) continue;
