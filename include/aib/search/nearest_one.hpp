@@ -44,10 +44,10 @@ inline f32x8 squared_distances(const query& q, const point_block& block, std::si
 /// A node or block that waits to be visited, and how far it is.
 struct pending_box {
   float squared;
-  std::uint32_t level;  ///< of the box's children; `pending_box::block` for a block
+  std::uint32_t level;  ///< of the box's children; `leaf` for a block or triangle
   std::uint32_t index;
 
-  static constexpr std::uint32_t block = ~0u;
+  static constexpr std::uint32_t leaf = ~0u;
 };
 
 /// Boxes that wait, the nearest child of the last visited node on top. Eight children a level and
@@ -56,8 +56,8 @@ class pending_boxes {
  public:
   [[nodiscard]] bool empty() const { return size_ == 0; }
   pending_box pop() { return boxes_[--size_]; }
-  void push_root(const box_tree& tree) {
-    boxes_[size_++] = {0, static_cast<std::uint32_t>(tree.levels() - 1), 0};
+  void push_root(std::size_t levels) {
+    boxes_[size_++] = {0, static_cast<std::uint32_t>(levels - 1), 0};
   }
 
   /// The children of a node whose bits are set in `mask`, farthest first.
@@ -65,7 +65,7 @@ class pending_boxes {
     float distance[8];
     squared.store(distance);
     const std::size_t bottom = size_;
-    const std::uint32_t level = node.level == 0 ? pending_box::block : node.level - 1;
+    const std::uint32_t level = node.level == 0 ? pending_box::leaf : node.level - 1;
     for (; mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
       std::size_t place = size_++;
@@ -98,11 +98,11 @@ inline float nearest_one(const box_tree& tree,
   };
   visit(near_block);
   pending_boxes pending;
-  pending.push_root(tree);
+  pending.push_root(tree.levels());
   while (!pending.empty()) {
     const pending_box box = pending.pop();
     if (!(box.squared < bound)) continue;
-    if (box.level == pending_box::block) {
+    if (box.level == pending_box::leaf) {
       visit(box.index);
     } else {
       const f32x8 d = squared_distances(q.axis, q.axis, tree.level(box.level)[box.index]);

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/cloud/cloud.hpp>
+#include <aib/cloud/positions.hpp>
+
+#include <Eigen/Core>
+#include <nanoflann.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace aib::cloud {
+
+/// Another point and how far it is.
+struct neighbour {
+  std::size_t index;  ///< in the cloud
+  double distance;
+};
+
+/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
+/// Borrows nothing. For the one nearest point of millions see cloud::distances.
+class neighbours {
+ public:
+  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  neighbours(const neighbours&) = delete;
+  neighbours& operator=(const neighbours&) = delete;
+
+  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
+  /// finds itself first.
+  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
+    k = std::min(k, points_.position.size());
+    std::vector<std::size_t> index(k);
+    std::vector<double> squared(k);
+    const Eigen::Vector3d local = p - points_.origin;
+    const std::size_t n =
+        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
+    std::vector<neighbour> found;
+    for (std::size_t i = 0; i < n; ++i) {
+      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
+    }
+    return found;
+  }
+
+  /// How many points lie nearer than `radius`.
+  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
+    const Eigen::Vector3d local = p - points_.origin;
+    std::vector<std::pair<std::size_t, double>> found;
+    nanoflann::SearchParams unsorted;
+    unsorted.sorted = false;
+    return tree_.radiusSearch(local.data(), radius * radius, found, unsorted);
+  }
+
+ private:
+  struct finite_positions {
+    Eigen::Vector3d origin;
+    std::vector<Eigen::Vector3d> position;
+    std::vector<std::size_t> source;
+
+    explicit finite_positions(const cloud& c) : origin(c.origin) {
+      for (std::size_t i = 0; i < c.size(); ++i) {
+        if (!is_finite(c.points[i])) continue;
+        position.push_back(c.points[i].cast<double>());
+        source.push_back(i);
+      }
+    }
+
+    // The interface that nanoflann asks for.
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return position[i][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
+
+  finite_positions points_;
+  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+};
+
+}  // namespace aib::cloud
