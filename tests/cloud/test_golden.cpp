@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/compare.hpp>
 #include <aib/io/ply.hpp>
+#include <aib/sample/voxel.hpp>
 
 #include <doctest/doctest.h>
 
@@ -90,6 +91,24 @@ TEST_CASE("clouds compare as Open3D, scipy, DA3 and CUT3R compare them") {
       check_near(both.to_reference.quantile(std::stod(percent) / 100), value);
     }
     for (const auto& found : c.scores) check_scores(found, e["at_tau"]);
+  }
+}
+
+TEST_CASE("voxels are Open3D's where the lattice is") {
+  if (!support::has_shared("voxel golden")) return;
+  const auto near = [](double found, double expected) {
+    return std::abs(found - expected) <= 1e-3 * expected;
+  };
+  for (const golden_case& g : golden_cases()) {
+    CAPTURE(g.name);
+    for (const auto& [size, expected] : g.expected()["voxel_down_sample_open3d"].items()) {
+      const sample::voxel_options how{.size = std::stod(size),
+                                      .anchor = sample::voxel_anchor::open3d};
+      const auto estimate = sample::voxel(g.estimate, how);
+      const auto reference = sample::voxel(g.reference, how);
+      CHECK(near(static_cast<double>(estimate.size()), expected["n_est"]));
+      CHECK(near(static_cast<double>(reference.size()), expected["n_gt"]));
+    }
   }
 }
 #endif
