@@ -90,6 +90,30 @@ void check_sizes(std::string_view function,
     fail("mask", mask.width, mask.height);
 }
 
+namespace detail {
+
+inline namespace AIB_ISA {
+
+inline f64x4 load4(const double* p) { return f64x4::load(p); }
+inline f64x4 load4(const float* p) { return f64x4::convert(p); }
+inline f64x4 load4(const std::uint8_t* p) {
+  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
+  return f64x4::load(inside);
+}
+
+/// Four from `p`, of which `n` are there: the others are 0.
+template <class T>
+f64x4 load4(const T* p, std::size_t n) {
+  if (n >= 4) return load4(p);
+  T some[4] = {};
+  std::copy_n(p, n, some);
+  return load4(some);
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace detail
+
 inline namespace AIB_ISA {
 
 /// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
@@ -141,26 +165,6 @@ class error_adder {
   f64x4 squared_inverse_ = number(0);
   f64x4 below_delta_[3] = {number(0), number(0), number(0)};
 };
-
-namespace detail {
-
-inline f64x4 load4(const double* p) { return f64x4::load(p); }
-inline f64x4 load4(const float* p) { return f64x4::convert(p); }
-inline f64x4 load4(const std::uint8_t* p) {
-  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
-  return f64x4::load(inside);
-}
-
-/// Four from `p`, of which `n` are there: the others are 0.
-template <class T>
-f64x4 load4(const T* p, std::size_t n) {
-  if (n >= 4) return load4(p);
-  T some[4] = {};
-  std::copy_n(p, n, some);
-  return load4(some);
-}
-
-}  // namespace detail
 
 template <class Estimate, class Reference>
 void error_adder::add(std::span<const Estimate> estimate,
