@@ -1,12 +1,53 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/sample/mesh.hpp>
+#include <aib/sample/unproject.hpp>
+#include <aib/sample/voxel.hpp>
 
 #include "kit.hpp"
 #include <cstdint>
 #include <utility>
 
 namespace aib::bind {
+
+namespace {
+
+sample::unproject_options unproject_options(options& o, const session& s) {
+  using sample::confidence_rule;
+  using sample::depth_meaning;
+  sample::unproject_options u;
+  if (const auto* confidence = o.object<depth::depth_map>("confidence"))
+    u.confidence = confidence->values.view();
+  if (const auto* image = o.object<raster::color_image>("image")) u.colors = image->view();
+  u.min_confidence = o.get<double>("min_confidence");
+  u.rule = o.choice("rule", u.rule,
+                    {{"raw", confidence_rule::raw},
+                     {"sigmoid", confidence_rule::sigmoid},
+                     {"percentile", confidence_rule::percentile}});
+  u.stride = o.count("stride", u.stride);
+  u.pixel_offset = o.number("pixel_offset", u.pixel_offset);
+  u.meaning = o.choice("depth", u.meaning,
+                       {{"planar", depth_meaning::planar}, {"range", depth_meaning::range}});
+  u.threads = s.threads;
+  return u;
+}
+
+sample::voxel_options voxel_options(options& o, const session& s) {
+  using sample::voxel_anchor;
+  using sample::voxel_pick;
+  sample::voxel_options v;
+  v.size = o.number("size", v.size);
+  v.anchor = o.choice("anchor", v.anchor,
+                      {{"world", voxel_anchor::world}, {"open3d", voxel_anchor::open3d}});
+  v.pick = o.choice("pick", v.pick,
+                    {{"mean", voxel_pick::mean},
+                     {"centre", voxel_pick::centre},
+                     {"nearest", voxel_pick::nearest}});
+  v.threads = s.threads;
+  return v;
+}
+
+}  // namespace
 
 void bind_sample(lua_State* state) {
   module(state, "sample")
@@ -24,6 +65,23 @@ void bind_sample(lua_State* state) {
                   info.set("area", samples.area).set("density", samples.density);
                   info.set("floor", samples.floor);
                   return results(std::move(samples.points), info);
+                })
+      .function("voxel", {"cloud", "options"},
+                [](session& s, const cloud::cloud& points, options& o) {
+                  const auto how = voxel_options(o, s);
+                  o.done();
+                  return sample::voxel(points, how);
+                })
+      .function("unproject", {"depth", "camera", "pose", "options"},
+                [](lua_State* l, session& s, const depth::depth_map& map,
+                   const math::camera& camera, const math::rigid3& pose, options& o) {
+                  const auto how = unproject_options(o, s);
+                  o.done();
+                  auto made = sample::unproject(map, camera, pose, how);
+                  record info(l);
+                  info.set("n_valid", made.n_valid).set("n_unsure", made.n_unsure);
+                  info.set("n_unseen", made.n_unseen);
+                  return results(std::move(made.points), info);
                 });
 }
 
