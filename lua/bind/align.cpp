@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/align/batches.hpp>
+#include <aib/align/icp.hpp>
 #include <aib/align/trajectory.hpp>
 #include <aib/align/umeyama.hpp>
 
 #include "kit.hpp"
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aib::bind {
@@ -67,10 +70,48 @@ record as_record(lua_State* state, const align::alignment& a) {
   return r.set("turn_error", a.turn_error).set("warnings", a.warnings);
 }
 
+/// What `trajectory` gives, with the frames first..last and what is told of batches alone;
+/// `degenerate` says why there is no transform.
+record as_record(lua_State* state, const align::batch_alignment& b) {
+  record r = b.fit ? as_record(state, *b.fit) : record(state);
+  r.set("first", b.begin + 1).set("last", b.end).set("half_rmse", b.half_rmse);
+  r.set("seam", b.seam);
+  if (!b.fit) r.set("degenerate", b.degenerate);
+  return r;
+}
+
+align::icp_options icp_options(options& o, const session& s) {
+  using align::icp_metric;
+  align::icp_options i;
+  i.max_distance = o.numbers("max_distance", {});
+  i.metric =
+      o.choice("metric", i.metric, {{"point", icp_metric::point}, {"plane", icp_metric::plane}});
+  i.with_scale = o.flag("with_scale", i.with_scale);
+  if (const auto* init = o.object<math::sim3>("init")) i.init = *init;
+  i.max_iterations = o.count("max_iterations", i.max_iterations);
+  i.relative_change = o.number("relative_change", i.relative_change);
+  i.threads = s.threads;
+  return i;
+}
+
+record as_record(lua_State* state, const align::icp_result& i) {
+  record r(state);
+  r.set("transform", i.transform).set("rmse", i.rmse).set("fitness", i.fitness);
+  r.set("converged", i.converged).set("n_pairs", i.n_pairs);
+  return r.set("n_iterations", i.n_iterations);
+}
+
 }  // namespace
 
 void bind_align(lua_State* state) {
   module(state, "align")
+      .function("icp", {"est", "ref", "options"},
+                [](lua_State* l, session& s, const cloud::cloud& est, const cloud::cloud& ref,
+                   options& o) {
+                  const auto how = icp_options(o, s);
+                  o.done();
+                  return as_record(l, align::icp(est, ref, how));
+                })
       .function("umeyama", {"est", "ref", "options"},
                 [](const sol::object& est, const sol::object& ref, options& o) {
                   const align::umeyama_options u{o.flag("scale", true), rank_option(o)};
@@ -84,6 +125,19 @@ void bind_align(lua_State* state) {
             const align::trajectory_options t = trajectory_options(o);
             o.done();
             return as_record(l, align::trajectory(est, ref, t));
+          })
+      .function(
+          "batches", {"est", "ref", "options"},
+          [](lua_State* l, const pose::trajectory& est, const pose::trajectory& ref, options& o) {
+            align::batches_options b;
+            b.size = o.count("size", b.size);
+            b.sizes = o.get<std::vector<std::size_t>>("sizes").value_or(b.sizes);
+            b.align = trajectory_options(o);
+            o.done();
+            const auto batches = align::batches(est, ref, b);
+            std::vector<record> list;
+            for (const auto& batch : batches) list.push_back(as_record(l, batch));
+            return results(std::move(list), transformed(batches, est));
           });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/math/projection.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/sim3.hpp>
 
@@ -93,6 +94,14 @@ void bind_math(lua_State* state) {
                   if (!(t.scale > 0)) o.reject("scale", "a scale > 0 expected");
                   o.done();
                   return t;
+                })
+      .function("project", {"camera", "point"},
+                [](const math::camera& c, const Eigen::Vector3d& point) {
+                  return math::project(c, point);
+                })
+      .function("unproject", {"camera", "pixel"},
+                [](const math::camera& c, const Eigen::Vector2d& pixel) {
+                  return math::unproject(c, pixel);
                 })
       .function("pose", {"options"}, [](options& o) {
         const rigid3 p{rotation_option(o, rigid3{}.rotation),

@@ -3,11 +3,16 @@
 #include <aib/pose/ape.hpp>
 #include <aib/pose/associate.hpp>
 #include <aib/pose/auc.hpp>
+#include <aib/pose/auc_breakdown.hpp>
 #include <aib/pose/focal.hpp>
+#include <aib/pose/intrinsics.hpp>
+#include <aib/pose/kitti_odometry.hpp>
 #include <aib/pose/registration.hpp>
 #include <aib/pose/relative_angles.hpp>
 #include <aib/pose/rpe.hpp>
+#include <aib/pose/sub_trajectory.hpp>
 #include <aib/pose/trajectory.hpp>
+#include <aib/pose/worst_pairs.hpp>
 
 #include "camera.hpp"
 #include "kit.hpp"
@@ -99,12 +104,25 @@ std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
   return index;
 }
 
-record as_record(lua_State* state, const pose::pose_errors& e) {
-  const stats::summary& s = e.summary;
+record as_record(lua_State* state, const stats::summary& s) {
   record r(state);
   r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
   r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
-  return r.set("errors", e.errors).set("index", one_based(e.index));
+  return r;
+}
+
+record as_record(lua_State* state, const pose::pose_errors& e) {
+  return as_record(state, e.summary).set("errors", e.errors).set("index", one_based(e.index));
+}
+
+pose::auc_options read_auc_options(options& o, const session& s) {
+  pose::auc_options a;
+  a.max_deg = degrees_option(o);
+  a.convention = convention_option(o);
+  a.position_accuracy = o.number("position_accuracy", a.position_accuracy);
+  a.threads = s.threads;
+  a.control = s.control;
+  return a;
 }
 
 std::vector<double> degrees_up_to(std::size_t n) {
@@ -122,30 +140,77 @@ record as_record(lua_State* state, const pose::auc_result& a) {
   return r.set("rra", keyed(state, tau, a.rra)).set("rta", keyed(state, tau, a.rta));
 }
 
+/// auc, auc_signed, rra and rta are nil where no pair has a direction.
+record as_record(lua_State* state, const pose::partial_auc& p) {
+  record r(state);
+  r.set("n_pairs", p.n_pairs).set("n_zero_baseline", p.n_zero_baseline);
+  if (!p.value) return r;
+  const std::vector<double> tau = degrees_up_to(p.value->rra.size());
+  r.set("auc", p.value->auc).set("auc_signed", p.value->auc_signed);
+  return r.set("rra", keyed(state, tau, p.value->rra)).set("rta", keyed(state, tau, p.value->rta));
+}
+
+record as_record(lua_State* state, const pose::segment_errors& e) {
+  record r(state);
+  r.set("translation_percent", e.translation_percent);
+  return r.set("rotation_deg_per_m", e.rotation_deg_per_m).set("n", e.n);
+}
+
+record as_record(lua_State* state, const pose::sub_trajectory_errors& e) {
+  record r(state);
+  r.set("length", e.length).set("translation", as_record(state, e.translation));
+  r.set("translation_percent", as_record(state, e.translation_percent));
+  r.set("rotation_deg", as_record(state, e.rotation_deg));
+  r.set("rotation_deg_per_m", as_record(state, e.rotation_deg_per_m));
+  r.set("yaw_deg", as_record(state, e.yaw_deg));
+  return r.set("gravity_deg", as_record(state, e.gravity_deg));
+}
+
+record as_record(lua_State* state, const pose::worst_pair& w) {
+  record r(state);
+  r.set("first", w.first).set("second", w.second).set("rotation_deg", w.rotation_deg);
+  return r.set("translation_deg", w.translation_deg);
+}
+
+std::vector<pose::gap_range> gap_ranges(const std::vector<std::vector<std::size_t>>& gaps) {
+  std::vector<pose::gap_range> out;
+  for (const auto& g : gaps) {
+    if (g.size() != 2)
+      throw argument_error(
+          "aib.pose.auc_by_gap: argument 3 (gaps): list of {first, last} expected");
+    out.push_back({g[0], g[1]});
+  }
+  return out;
+}
+
 record as_record(lua_State* state, const pose::registration& g) {
   record r(state);
   r.set("rate", g.rate).set("n_registered", g.n_registered).set("n_total", g.n_total);
   return r.set("missing", g.missing);
 }
 
-/// Views with a camera on both sides; a number is the focal length of every reference camera.
-std::vector<pose::camera_pair> views_of(const camera_map& cameras, const sol::object& reference) {
+/// Views with a camera on both sides.
+std::vector<pose::camera_pair> views_of(const camera_map& cameras, const camera_map& reference) {
   std::vector<pose::camera_pair> views;
-  if (const auto focal = read_if<double>(reference)) {
-    for (const auto& [name, camera] : cameras)
-      views.push_back({camera, math::pinhole(camera.width, camera.height, *focal, *focal, 0, 0)});
-    return views;
+  for (const auto& [name, camera] : cameras) {
+    const auto at = reference.find(name);
+    if (at != reference.end()) views.push_back({camera, at->second});
   }
-  const auto known = read_if<camera_map>(reference);
-  if (!known) {
+  return views;
+}
+
+/// The same; a number is the focal length of every reference camera.
+std::vector<pose::camera_pair> views_of(const camera_map& cameras, const sol::object& reference) {
+  if (const auto known = read_if<camera_map>(reference)) return views_of(cameras, *known);
+  const auto focal = read_if<double>(reference);
+  if (!focal) {
     throw argument_error(
         "aib.pose.focal_error: argument 2 (ref): table of cameras by image name, or a focal length "
         "in pixels, expected");
   }
-  for (const auto& [name, camera] : cameras) {
-    const auto at = known->find(name);
-    if (at != known->end()) views.push_back({camera, at->second});
-  }
+  std::vector<pose::camera_pair> views;
+  for (const auto& [name, camera] : cameras)
+    views.push_back({camera, math::pinhole(camera.width, camera.height, *focal, *focal, 0, 0)});
   return views;
 }
 
@@ -256,15 +321,102 @@ void bind_errors(module& m) {
       .function(
           "auc", {"est", "ref", "options"},
           [](lua_State* l, session& s, const trajectory& est, const trajectory& ref, options& o) {
-            pose::auc_options a;
-            a.max_deg = degrees_option(o);
-            a.convention = convention_option(o);
-            a.position_accuracy = o.number("position_accuracy", a.position_accuracy);
-            a.threads = s.threads;
-            a.control = s.control;
+            const pose::auc_options a = read_auc_options(o, s);
             o.done();
             return as_record(l, pose::auc(est, ref, a));
           });
+}
+
+void bind_breakdown(module& m) {
+  m.function("auc_by_batch", {"est", "ref", "batch", "options"},
+             [](lua_State* l, session& s, const trajectory& est, const trajectory& ref,
+                const std::vector<std::size_t>& batch, options& o) {
+               const pose::auc_options a = read_auc_options(o, s);
+               o.done();
+               const auto r = pose::auc_by_batch(est, ref, batch, a);
+               record out(l);
+               out.set("intra", as_record(l, r.intra)).set("cross", as_record(l, r.cross));
+               return out;
+             })
+      .function(
+          "auc_by_gap", {"est", "ref", "gaps", "options"},
+          [](lua_State* l, session& s, const trajectory& est, const trajectory& ref,
+             const std::vector<std::vector<std::size_t>>& gaps, options& o) {
+            const pose::auc_options a = read_auc_options(o, s);
+            o.done();
+            std::vector<record> out;
+            for (const auto& r : pose::auc_by_gap(est, ref, gap_ranges(gaps), a))
+              out.push_back(as_record(l, r.part).set("first", r.gap.first).set("last", r.gap.last));
+            return out;
+          })
+      .function(
+          "worst_pairs", {"est", "ref", "options"},
+          [](lua_State* l, session& s, const trajectory& est, const trajectory& ref, options& o) {
+            const pose::worst_pairs_options w{o.count("n", 10), s.threads, s.control};
+            o.done();
+            std::vector<record> out;
+            for (const auto& pair : pose::worst_pairs(est, ref, w))
+              out.push_back(as_record(l, pair));
+            return out;
+          });
+}
+
+void bind_odometry(module& m) {
+  m.function("kitti_odometry", {"est", "ref", "options"},
+             [](lua_State* l, const trajectory& est, const trajectory& ref, options& o) {
+               pose::kitti_odometry_options k;
+               k.lengths_m = o.numbers("lengths", k.lengths_m);
+               k.step = o.count("step", k.step);
+               o.done();
+               const auto r = pose::kitti_odometry(est, ref, k);
+               std::vector<record> by_length;
+               for (std::size_t i = 0; i < r.lengths_m.size(); ++i)
+                 by_length.push_back(as_record(l, r.by_length[i]).set("length", r.lengths_m[i]));
+               return as_record(l, r.all).set("by_length", by_length);
+             })
+      .function("sub_trajectories", {"est", "ref", "options"},
+                [](lua_State* l, const trajectory& est, const trajectory& ref, options& o) {
+                  pose::sub_trajectory_options s;
+                  s.lengths = o.numbers("lengths", {});
+                  s.tolerance = o.number("tolerance", s.tolerance);
+                  o.done();
+                  std::vector<record> out;
+                  for (const auto& e : pose::sub_trajectories(est, ref, s))
+                    out.push_back(as_record(l, e));
+                  return out;
+                });
+}
+
+void bind_intrinsics(module& m) {
+  m.function("focal_error", {"cameras", "ref", "options"},
+             [](lua_State* l, const camera_map& cameras, const sol::object& ref, options& o) {
+               using pose::focal_over;
+               const focal_over over =
+                   o.choice("over", focal_over::views,
+                            {{"views", focal_over::views}, {"cameras", focal_over::cameras}});
+               o.done();
+               const auto r = pose::focal_error(views_of(cameras, ref), over);
+               record out(l);
+               out.set("mre", r.mre).set("n", r.n);
+               return out;
+             })
+      .function("intrinsics_error", {"cameras", "ref"},
+                [](lua_State* l, const camera_map& cameras, const camera_map& ref) {
+                  const auto r = pose::intrinsics_error(views_of(cameras, ref));
+                  record out(l);
+                  out.set("focal_mre", r.focal.mre).set("focal_spread", r.focal_spread);
+                  out.set("principal_point_px", r.principal_point_px).set("n", r.focal.n);
+                  out.set("reprojection_px", r.reprojection_px);
+                  out.set("reprojection_max_px", r.reprojection_max_px);
+                  return out;
+                })
+      .function("reprojection_difference", {"est", "ref"},
+                [](lua_State* l, const math::camera& est, const math::camera& ref) {
+                  const auto r = pose::reprojection_difference(est, ref);
+                  record out(l);
+                  out.set("mean", r.mean).set("max", r.max).set("n", r.n).set("n_lost", r.n_lost);
+                  return out;
+                });
 }
 
 }  // namespace
@@ -274,16 +426,9 @@ void bind_pose(lua_State* state) {
   module m(state, "pose");
   bind_association(m);
   bind_errors(m);
-  m.function("focal_error", {"cameras", "ref", "options"},
-             [](lua_State* l, const camera_map& cameras, const sol::object& ref, options& o) {
-               using pose::focal_over;
-               const focal_over over =
-                   o.choice("over", focal_over::views,
-                            {{"views", focal_over::views}, {"cameras", focal_over::cameras}});
-               o.done();
-               const auto r = pose::focal_error(views_of(cameras, ref), over);
-               return record(l).set("mre", r.mre).set("n", r.n);
-             });
+  bind_breakdown(m);
+  bind_odometry(m);
+  bind_intrinsics(m);
 }
 
 }  // namespace aib::bind
