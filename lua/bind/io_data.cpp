@@ -3,9 +3,14 @@
 #include <aib/cloud/distances.hpp>
 #include <aib/io/cloud.hpp>
 #include <aib/io/depth.hpp>
+#include <aib/io/image.hpp>
 #include <aib/io/mesh.hpp>
+#include <aib/math/camera.hpp>
+#include <aib/raster/color.hpp>
 
 #include "kit.hpp"
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -31,6 +36,7 @@ io::cloud_options cloud_options(options& o) {
   using enum io::splat_rule;
   io::cloud_options c;
   c.up = up_option(o);
+  c.key = o.text("key", c.key);
   c.splats = o.choice("splats", c.splats, {{"refuse", refuse}, {"centres", centres}});
   return c;
 }
@@ -38,11 +44,19 @@ io::cloud_options cloud_options(options& o) {
 io::depth_options depth_options(options& o) {
   io::depth_options d;
   d.channel = o.text("channel", d.channel);
+  d.key = o.text("key", d.key);
+  if (const auto index = o.get<std::size_t>("index")) {
+    if (*index == 0) o.reject("index", "frames count from 1");
+    d.index = *index - 1;
+  }
   d.scale = o.number("scale", d.scale);
   d.max_depth = o.number("max_depth", d.max_depth);
   d.width = o.count("width", d.width);
   d.height = o.count("height", d.height);
   d.rule = rule_option(o);
+  d.raw_width = o.count("raw_width", d.raw_width);
+  d.raw_height = o.count("raw_height", d.raw_height);
+  if (const auto* camera = o.object<math::camera>("range_camera")) d.range_camera = *camera;
   return d;
 }
 
@@ -88,6 +102,38 @@ std::vector<std::string> comments_option(options& o) {
   return o.get<std::vector<std::string>>("comments").value_or(std::vector<std::string>());
 }
 
+template <class T>
+sol::object as_object(lua_State* state, T value) {
+  push(state, std::move(value));
+  return sol::stack::pop<sol::object>(state);
+}
+
+/// Labels where the file holds one number a pixel, or where they are asked for; else colours.
+sol::object read_picture(lua_State* state, const path& file, options& o) {
+  enum class kind { automatic, labels, color };
+  const auto as =
+      o.choice("as", kind::automatic, {{"labels", kind::labels}, {"color", kind::color}});
+  o.done();
+  const bool labels = as == kind::labels || (as == kind::automatic && io::is_label_image(file));
+  return labels ? as_object(state, io::read_labels(file)) : as_object(state, io::read_image(file));
+}
+
+void write_picture(const path& file, const sol::object& image) {
+  if (const auto* color = get_if<raster::color_image>(image))
+    return io::write_image<raster::rgb>(file, *color);
+  if (const auto* labels = get_if<raster::label_image>(image))
+    return io::write_image<std::uint16_t>(file, *labels);
+  throw argument_error("aib.io.write_image: argument 2 (image): image or label_image expected");
+}
+
+void bind_images(module& m) {
+  m.function("read_image", {"path", "options"}, [](lua_State* state, const path& file, options& o) {
+    return read_picture(state, file, o);
+  });
+  m.function("write_image", {"path", "image"},
+             [](const path& file, const sol::object& image) { write_picture(file, image); });
+}
+
 void bind_readers(module& m) {
   m.function("read_cloud", {"path", "options"}, [](const path& file, options& o) {
     const auto read = cloud_options(o);
@@ -104,6 +150,15 @@ void bind_readers(module& m) {
     o.done();
     return io::read_depth(file, read);
   });
+  m.function("read_stack", {"path", "options"}, [](const path& file, options& o) {
+    const auto read = depth_options(o);
+    o.done();
+    return io::read_depth_stack(file, read);
+  });
+#if defined(AIB_WITH_EXR)
+  m.function("exr_channels", {"path"},
+             [](const path& file) { return io::exr_channel_names(file); });
+#endif
 }
 
 void bind_writers(module& m) {
@@ -132,8 +187,9 @@ void bind_writers(module& m) {
              });
   m.function("write_depth", {"path", "depth", "options"},
              [](const path& file, const depth::depth_map& depth, options& o) {
+               const io::depth_write_options write{.scale = o.number("scale", 1000)};
                o.done();
-               io::write_depth(file, depth.values);
+               io::write_depth(file, depth.values, write);
              });
 }
 
@@ -142,6 +198,7 @@ void bind_writers(module& m) {
 void bind_io_data(lua_State* state) {
   module m(state, "io");
   bind_readers(m);
+  bind_images(m);
   bind_writers(m);
 }
 

@@ -203,6 +203,9 @@ TEST_CASE("exr: the channel is chosen by name") {
   CHECK(chosen({"A", "Y"}) == "Y");
   CHECK(chosen({"distance"}) == "distance");
   CHECK(chosen({"A", "B", "Z"}, "B") == "B");
+  CHECK(io::exr_channel_names(
+            handmade{.channels = {"A", "N.X"}, .pixels = floats({1, 1, 2, 2})}.file()) ==
+        std::vector<std::string>{"A", "N.X"});
   const auto path = handmade{.channels = {"A", "N.X"}, .pixels = floats({1, 1, 2, 2})}.file();
   CHECK(error_of(path) == ": exr: no channel looks like depth; name one of A, N.X");
   CHECK(error_of(path, {.channel = "Z"}) == ": exr: no channel \"Z\"; there are A, N.X");

@@ -50,6 +50,10 @@ struct exr_options {
 /// read (see read_exr_header, read_exr_channel).
 depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options = {});
 
+/// Names of all channels, with the name of their part where it has one.
+/// Throws format_error where the header is damaged.
+std::vector<std::string> exr_channel_names(const std::filesystem::path& path);
+
 struct exr_write_options {
   std::string channel = "Z";
   exr_compression compression = exr_compression::zip;  ///< none, zips or zip
@@ -196,6 +200,15 @@ inline std::size_t clear_background(raster::image<float>& image, float from) {
 }
 
 }  // namespace detail
+
+inline std::vector<std::string> exr_channel_names(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const exr_part& part : read_exr_header(input_file(path)).parts) {
+    for (const exr_channel_info& channel : part.channels)
+      names.push_back(part.name.empty() ? channel.name : part.name + "." + channel.name);
+  }
+  return names;
+}
 
 inline depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options) {
   const input_file file(path);

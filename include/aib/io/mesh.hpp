@@ -5,9 +5,15 @@
 #include <aib/core/error.hpp>
 #include <aib/io/axes.hpp>
 #include <aib/io/file_kind.hpp>
+#include <aib/io/obj.hpp>
 #include <aib/io/ply.hpp>
 #include <aib/io/ply_write.hpp>
+#include <aib/io/stl.hpp>
 #include <aib/mesh/mesh.hpp>
+
+#if defined(AIB_WITH_JSON)
+#include <aib/io/glb.hpp>
+#endif
 
 #include <filesystem>
 
@@ -17,19 +23,39 @@ struct mesh_options {
   up_axis up = up_axis::z;  ///< axis that points up in the file
 };
 
-/// Reads a mesh; the format is told from the content, then from the extension.
+/// Reads a mesh; the format is told from the content, then from the extension: PLY, OBJ, STL, GLB.
 ///
 /// Throws format_error where the format is not known or the file is damaged, io_error where it
 /// cannot be read.
-inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options = {}) {
-  mesh::mesh result;
+mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options = {});
+
+namespace detail {
+
+inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
   switch (kind_of(path)) {
     case file_kind::ply:
-      result = read_ply_mesh(path);
-      break;
+      return read_ply_mesh(path);
+    case file_kind::obj:
+      return read_obj(path);
+    case file_kind::stl:
+      return read_stl(path);
+    case file_kind::glb:
+#if defined(AIB_WITH_JSON)
+      return read_glb_mesh(path);
+#else
+      throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
+#endif
+    case file_kind::gltf:
+      throw format_error(path, "glTF of several files is not supported; export it as .glb");
     default:
-      throw format_error(path, "a mesh expected: PLY");
+      throw format_error(path, "a mesh expected: PLY, OBJ, STL or GLB");
   }
+}
+
+}  // namespace detail
+
+inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
+  mesh::mesh result = detail::read_stored_mesh(path);
   turn_z_up(result, options.up);
   return result;
 }

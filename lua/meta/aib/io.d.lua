@@ -105,4 +105,84 @@ function io.array_names(path) end
 ---@param array aib.Array
 function io.write_array(path, array) end
 
+---@class aib.io.CloudOptions
+---@field up? "z"|"y"  # axis that points up in the file; "y" turns (x, y, z) to (x, -z, y)
+---@field splats? "refuse"|"centres"  # PLY files of 3D Gaussian splats
+---@field key? string  # NPZ only: the array
+
+---The points of a PLY, PCD, XYZ, CSV, PTS, LAS, NPY, NPZ (N x 3) or GLB file; of a mesh file (PLY,
+---OBJ, GLB) its vertices. Points that are not finite stay, `warnings` counts them. LAZ and E57 are
+---refused with advice how to convert them.
+---@param path string
+---@param options? aib.io.CloudOptions
+---@return aib.Cloud
+function io.read_cloud(path, options) end
+
+---Writes a cloud as binary PLY, with double coordinates where it lies far from zero.
+---@param path string
+---@param cloud aib.Cloud
+---@param options? { scalars?: table<string, aib.Distances|number[]>, colors?: integer[][], comments?: string[] }  # one value, one {red, green, blue} a point
+function io.write_cloud(path, cloud, options) end
+
+---The triangles of a PLY, OBJ, STL or GLB file; polygons become fans. Face labels of PLY and the
+---nodes of GLB become labels.
+---@param path string
+---@param options? { up?: "z"|"y" }
+---@return aib.Mesh
+function io.read_mesh(path, options) end
+
+---Writes a mesh as binary PLY.
+---@param path string
+---@param mesh aib.Mesh
+---@param options? { vertex_colors?: integer[][], face_colors?: integer[][], face_scalars?: table<string, aib.Distances|number[]>, comments?: string[] }
+function io.write_mesh(path, mesh, options) end
+
+---@class aib.io.DepthOptions
+---@field channel? string  # EXR: the channel; else *.Depth.Z, Z, *.V, Y, or R where R, G and B are equal
+---@field key? string  # NPZ: the array; else depth, depths, local_points or the only one
+---@field index? integer  # NPY, NPZ of several frames: which one, from 1
+---@field scale? number  # stored value of one unit: PNG 1000 (TUM 5000, KITTI 256), others 1
+---@field max_depth? number  # this and beyond becomes 0
+---@field width? integer  # size of the result, by nearest neighbour
+---@field height? integer
+---@field rule? "centre"|"floor"  # of the nearest neighbour; "floor" is OpenCV's
+---@field raw_width? integer  # files without header (ETH3D): their size
+---@field raw_height? integer
+---@field range_camera? aib.Camera  # the file holds distances along this camera's rays
+
+---Planar depth of an EXR, PFM, NPY, NPZ, 16-bit PNG, COLMAP .bin or OpenMVS .dmap file. Background
+---(Blender's 1e10, 65504 in half channels) becomes 0; `warnings` says what was removed or assumed.
+---@param path string
+---@param options? aib.io.DepthOptions
+---@return aib.DepthMap
+function io.read_depth(path, options) end
+
+---All frames of an NPY or NPZ array; of any other file the one that it has.
+---@param path string
+---@param options? aib.io.DepthOptions
+---@return aib.DepthMap[]
+function io.read_stack(path, options) end
+
+---Writes depth as .exr (float, ZIP), .pfm, .npy or .png (16 bits).
+---@param path string
+---@param depth aib.DepthMap
+---@param options? { scale?: number }  # PNG: stored value of one unit, 1000
+function io.write_depth(path, depth, options) end
+
+---Names of the channels of an EXR file.
+---@param path string
+---@return string[]
+function io.exr_channels(path) end
+
+---A PNG or JPEG: labels where it is gray (a number a pixel, as stored), else colours.
+---@param path string
+---@param options? { as?: "labels"|"color" }  # "labels" also takes the indices of a palette
+---@return aib.Image|aib.LabelImage
+function io.read_image(path, options) end
+
+---Writes colours (8 bits) or labels (16 bits) as PNG.
+---@param path string
+---@param image aib.Image|aib.LabelImage
+function io.write_image(path, image) end
+
 return io

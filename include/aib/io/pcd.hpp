@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/cloud/cloud.hpp>
+#include <aib/core/error.hpp>
+#include <aib/io/bytes.hpp>
+#include <aib/io/file.hpp>
+#include <aib/io/numbers.hpp>
+#include <aib/io/positions.hpp>
+#include <aib/io/text.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace aib::io {
+
+/// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
+/// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
+///
+/// Throws format_error where the file is damaged.
+/// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
+cloud::cloud read_pcd(const std::filesystem::path& path);
+
+namespace detail {
+
+struct pcd_field {
+  std::string name;
+  char type = 'F';         ///< F, I or U
+  std::size_t bytes = 4;   ///< of one number
+  std::size_t count = 1;   ///< numbers a point
+  std::size_t offset = 0;  ///< in a binary row
+};
+
+struct pcd_header {
+  std::vector<pcd_field> fields = {};
+  std::uint64_t n = 0;
+  std::string data = {};
+  std::size_t end = 0;  ///< byte of the first datum
+  std::size_t lines = 0;
+  bool has_viewpoint = false;
+
+  [[nodiscard]] std::size_t row_bytes() const {
+    return fields.empty() ? 0 : fields.back().offset + fields.back().bytes * fields.back().count;
+  }
+  [[nodiscard]] const pcd_field* find(std::string_view name) const {
+    for (const pcd_field& f : fields)
+      if (f.name == name) return &f;
+    return nullptr;
+  }
+};
+
+class pcd_header_parser {
+ public:
+  pcd_header_parser(std::string_view text, const std::filesystem::path& path)
+      : text_(text), lines_(text, path) {}
+
+  pcd_header parse() {
+    while (lines_.next_content()) {
+      split(lines_.line(), words_);
+      const std::string_view key = words_[0];
+      if (key == "FIELDS" || key == "COLUMNS") parse_names();
+      if (key == "SIZE") each([](pcd_field& f, std::size_t v) { f.bytes = v; });
+      if (key == "COUNT") each([](pcd_field& f, std::size_t v) { f.count = v; });
+      if (key == "TYPE") parse_types();
+      if (key == "WIDTH") width_ = number(1);
+      if (key == "HEIGHT") height_ = number(1);
+      if (key == "POINTS") points_ = number(1);
+      if (key == "VIEWPOINT") parse_viewpoint();
+      if (key == "DATA") return finish();
+    }
+    lines_.fail("pcd: no DATA line");
+  }
+
+ private:
+  void parse_names() {
+    for (std::size_t i = 1; i < words_.size(); ++i)
+      header_.fields.push_back({std::string(words_[i])});
+  }
+
+  template <class Set>
+  void each(Set set) {
+    if (words_.size() != header_.fields.size() + 1)
+      lines_.fail(message("pcd: ", header_.fields.size(), " values expected"));
+    for (std::size_t i = 0; i < header_.fields.size(); ++i)
+      set(header_.fields[i], static_cast<std::size_t>(number(i + 1)));
+  }
+
+  void parse_types() {
+    if (words_.size() != header_.fields.size() + 1) lines_.fail("pcd: a TYPE a field expected");
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+      if (words_[i + 1] != "F" && words_[i + 1] != "I" && words_[i + 1] != "U")
+        lines_.fail("pcd: TYPE F, I or U expected");
+      header_.fields[i].type = words_[i + 1][0];
+    }
+  }
+
+  void parse_viewpoint() {
+    constexpr std::array<std::string_view, 8> identity{"VIEWPOINT", "0", "0", "0",
+                                                       "1",         "0", "0", "0"};
+    for (std::size_t i = 0; i < identity.size() && i < words_.size(); ++i)
+      header_.has_viewpoint = header_.has_viewpoint || words_[i] != identity[i];
+  }
+
+  std::uint64_t number(std::size_t i) const {
+    const auto value = i < words_.size() ? io::parse<std::uint64_t>(words_[i]) : std::nullopt;
+    if (!value || *value > std::uint64_t{1} << 40)
+      lines_.fail(message("pcd: a whole number expected behind ", words_[0]));
+    return *value;
+  }
+
+  pcd_header finish() {
+    if (words_.size() != 2) lines_.fail("pcd: DATA ascii, binary or binary_compressed expected");
+    header_.data = words_[1];
+    header_.n = points_ ? *points_ : width_ * height_;
+    std::size_t offset = 0;
+    for (pcd_field& f : header_.fields) {
+      const bool known = f.bytes == 1 || f.bytes == 2 || f.bytes == 4 || f.bytes == 8;
+      if (!known || (f.type == 'F' && f.bytes < 4) || f.count == 0 || f.count > 65536)
+        lines_.fail(
+            message("pcd: field ", f.name, " of ", f.count, " numbers of ", f.bytes, " bytes"));
+      f.offset = offset;
+      offset += f.bytes * f.count;
+    }
+    for (const char* axis : {"x", "y", "z"})
+      if (!header_.find(axis)) lines_.fail("pcd: fields x, y and z expected");
+    const std::string_view line = lines_.line();
+    header_.end = static_cast<std::size_t>(line.data() + line.size() - text_.data());
+    header_.end = std::min(text_.find('\n', header_.end), text_.size() - 1) + 1;
+    header_.lines = lines_.number();
+    return std::move(header_);
+  }
+
+  std::string_view text_;
+  line_reader lines_;
+  std::vector<std::string_view> words_;
+  pcd_header header_;
+  std::uint64_t width_ = 0, height_ = 1;
+  std::optional<std::uint64_t> points_;
+};
+
+/// Expands LibLZF; false where the result has not exactly `to.size()` bytes.
+inline bool expand_lzf(std::string_view from, std::span<char> to) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < from.size();) {
+    const std::size_t control = static_cast<unsigned char>(from[i++]);
+    const auto next = [&] { return std::size_t{static_cast<unsigned char>(from[i++])}; };
+    if (control < 32) {
+      const std::size_t run = control + 1;
+      if (run > from.size() - i || run > to.size() - n) return false;
+      std::memcpy(to.data() + n, from.data() + i, run);
+      i += run;
+      n += run;
+      continue;
+    }
+    std::size_t run = control >> 5;
+    if (from.size() - i < (run == 7 ? 2u : 1u)) return false;
+    if (run == 7) run += next();
+    run += 2;
+    const std::size_t back = ((control & 31) << 8) + next() + 1;
+    if (back > n || run > to.size() - n) return false;
+    for (std::size_t k = 0; k < run; ++k, ++n) to[n] = to[n - back];
+  }
+  return n == to.size();
+}
+
+inline double pcd_number(const pcd_field& field, const char* at) {
+  const auto as = [&]<class I, class U>(I, U) {
+    return field.type == 'I' ? static_cast<double>(load<I>(at)) : static_cast<double>(load<U>(at));
+  };
+  if (field.type == 'F')
+    return field.bytes == 4 ? static_cast<double>(load<float>(at)) : load<double>(at);
+  switch (field.bytes) {
+    case 1:
+      return as(std::int8_t{}, std::uint8_t{});
+    case 2:
+      return as(std::int16_t{}, std::uint16_t{});
+    case 4:
+      return as(std::int32_t{}, std::uint32_t{});
+    default:
+      return as(std::int64_t{}, std::uint64_t{});
+  }
+}
+
+/// Numbers of the wanted fields, point by point.
+class pcd_points {
+ public:
+  pcd_points(const pcd_header& header, std::string_view bytes, const std::filesystem::path& path)
+      : header_(header),
+        path_(path),
+        color_(header.find("rgb") ? header.find("rgb") : header.find("rgba")),
+        label_(header.find("label")) {
+    if (header.data == "ascii") {
+      read_ascii(bytes);
+    } else if (header.data == "binary") {
+      read_binary(bytes.substr(header.end), header.row_bytes());
+    } else if (header.data == "binary_compressed") {
+      read_compressed(bytes.substr(header.end));
+    } else {
+      fail(message("DATA ascii, binary or binary_compressed expected, found ", header.data));
+    }
+  }
+
+  cloud::cloud finish() {
+    auto floats = to_floats(positions_);
+    result_.origin = floats.origin;
+    result_.points = std::move(floats.points);
+    if (header_.has_viewpoint)
+      result_.warnings.push_back("the viewpoint in the header was not applied");
+    if (result_.empty()) result_.warnings.push_back("no points");
+    if (auto warning = non_finite_warning(result_.points, "points"))
+      result_.warnings.push_back(std::move(*warning));
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("pcd: ", what));
+  }
+
+  void read_ascii(std::string_view text) {
+    line_reader lines(text, path_);
+    for (std::size_t i = 0; i < header_.lines; ++i) lines.next();
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      if (!lines.next_content())
+        lines.fail(message("pcd: ", header_.n, " points expected, found ", i));
+      std::string_view rest = lines.line();
+      add([&](const pcd_field& f, std::size_t) {
+        const auto number = take_number(rest);
+        if (!number) lines.fail(message("pcd: a number expected for ", f.name));
+        return *number;
+      });
+    }
+  }
+
+  void read_binary(std::string_view bytes, std::size_t row) {
+    if (header_.n > bytes.size() / row)
+      fail(message(header_.n, " points of ", row, " bytes expected, the file has ", bytes.size(),
+                   " bytes for them"));
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      const char* at = bytes.data() + i * row;
+      add([&](const pcd_field& f, std::size_t k) {
+        return pcd_number(f, at + f.offset + k * f.bytes);
+      });
+    }
+  }
+
+  /// Compressed data lie field after field.
+  void read_compressed(std::string_view bytes) {
+    byte_reader in(bytes, path_);
+    const auto packed = in.read<std::uint32_t>("pcd: compressed size");
+    const auto size = in.read<std::uint32_t>("pcd: size");
+    const std::string_view block = in.take(packed, "pcd: compressed points");
+    constexpr std::size_t most = 264;  // what three bytes of LZF can stand for
+    if (header_.n > size / header_.row_bytes() || size != header_.n * header_.row_bytes() ||
+        size / most > packed)
+      fail(message(header_.n, " points of ", header_.row_bytes(), " bytes expected, found ", size,
+                   " bytes in ", packed));
+    std::vector<char> plain(size);
+    if (!expand_lzf(block, plain)) fail("the compressed points are damaged");
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      add([&](const pcd_field& f, std::size_t k) {
+        return pcd_number(f, plain.data() + f.offset * header_.n + (i * f.count + k) * f.bytes);
+      });
+    }
+  }
+
+  /// Adds a point whose numbers `get(field, k)` gives in file order.
+  template <class Get>
+  void add(Get get) {
+    Eigen::Vector3d position(0, 0, 0);
+    Eigen::Vector3f normal(0, 0, 0);
+    for (const pcd_field& f : header_.fields) {
+      for (std::size_t k = 0; k < f.count; ++k) {
+        const double value = get(f, k);
+        if (k > 0) continue;
+        if (f.name.size() == 1 && f.name[0] >= 'x' && f.name[0] <= 'z')
+          position[f.name[0] - 'x'] = value;
+        if (f.name.size() == 8 && f.name.starts_with("normal_") && f.name[7] >= 'x' &&
+            f.name[7] <= 'z')
+          normal[f.name[7] - 'x'] = static_cast<float>(value);
+        if (&f == color_) result_.colors.push_back(color(f, value));
+        if (&f == label_) result_.labels.push_back(label_of(value));
+      }
+    }
+    positions_.push_back(position);
+    if (header_.find("normal_x")) result_.normals.push_back(normal);
+  }
+
+  static std::uint32_t label_of(double value) {
+    return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  }
+
+  /// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
+  static cloud::color color(const pcd_field& field, double value) {
+    const std::uint32_t bits = field.type == 'F'
+                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+                                   : label_of(value);
+    return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
+            static_cast<std::uint8_t>(bits)};
+  }
+
+  const pcd_header& header_;
+  std::filesystem::path path_;
+  const pcd_field* color_;
+  const pcd_field* label_;
+  std::vector<Eigen::Vector3d> positions_;
+  cloud::cloud result_;
+};
+
+}  // namespace detail
+
+inline cloud::cloud read_pcd(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const auto header = detail::pcd_header_parser(bytes, path).parse();
+  return detail::pcd_points(header, bytes, path).finish();
+}
+
+}  // namespace aib::io
