@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Compiles one header alone, all warnings as errors, and writes what the compiler says to a report.
 
-usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE
+usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRECOMPILED]
+       compile_header.py COMPILER BUILD_FOLDER HEADER PRECOMPILED
 
-An empty report is a header that compiles. Flags are those the tests are built with. A header
+The second form writes the precompiled header that the first may begin with. An empty report is a header that compiles. Flags are those the tests are built with. A header
 whose library is not here is skipped.
 """
 
@@ -22,11 +23,19 @@ def flags_of_tests(build_folder):
     commands = json.loads(pathlib.Path(build_folder, "compile_commands.json").read_text())
     command = next(c["command"] for c in commands if c["file"].endswith("test_error.cpp"))
     flags = [f for f in shlex.split(command) if re.match(r"-(I|isystem|D|std=|W|f|m|pthread)", f)]
-    return flags + ["-Wextra", "-Wpedantic", "-Werror", "-fdiagnostics-color=never"]
+    flags += ["-Wextra", "-Wpedantic", "-Werror", "-Wno-unknown-warning-option"]
+    return [*flags, "-fdiagnostics-color=never"]
 
 
-def main(compiler, build_folder, header, report, depfile):
+def precompile(compiler, build_folder, header, precompiled):
+    command = [compiler, *flags_of_tests(build_folder), "-x", "c++-header", header, "-o", precompiled]
+    subprocess.run(command, cwd=build_folder, check=True)
+
+
+def main(compiler, build_folder, header, report, depfile, precompiled=None):
     command = [compiler, *flags_of_tests(build_folder), "-fsyntax-only", "-MD", "-MF", depfile]
+    if precompiled:
+        command += ["-include-pch", precompiled]
     command += ["-MT", report, "-x", "c++", "-include", header, "/dev/null"]
     run = subprocess.run(command, cwd=build_folder, capture_output=True, text=True)
     absent = ABSENT.search(run.stderr)
@@ -38,4 +47,4 @@ def main(compiler, build_folder, header, report, depfile):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    (precompile if len(sys.argv) == 5 else main)(*sys.argv[1:])
