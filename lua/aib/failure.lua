@@ -7,9 +7,13 @@ local aib = require "aib"
 
 local M = {}
 
+--- Texts that were raised here, which begin with no script position, though they may look so (benchmark.lua:3: ...).
+local plain = {}
+
 --- Raises an error of the kind. Its text carries no script position: it is meant for the one who runs the script.
 function M.raise(kind, text)
   aib.system.remember(kind, text)
+  plain[text] = true
   error(text, 0)
 end
 
@@ -19,6 +23,7 @@ function M.kind(caught) return aib.error_kind(tostring(caught)) end
 --- The text of an error value without the script position in front of it.
 function M.message(caught)
   local text = tostring(caught)
+  if plain[text] then return text end
   return text:match("^[^\n:]+%.lua:%d+: (.*)") or text:match('^%[string "[^"\n]*"%]:%d+: (.*)') or text
 end
 
