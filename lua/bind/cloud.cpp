@@ -6,6 +6,8 @@
 #include <aib/cloud/compare.hpp>
 #include <aib/cloud/crop.hpp>
 #include <aib/cloud/distances.hpp>
+#include <aib/cloud/normals.hpp>
+#include <aib/cloud/outliers.hpp>
 #include <aib/cloud/positions.hpp>
 #include <aib/cloud/transform.hpp>
 
@@ -190,23 +192,47 @@ void bind_distances_type(lua_State* state) {
       .method("share_beyond", {}, [](const distances& d) { return d.share_beyond(); });
 }
 
-}  // namespace
-
-void bind_cloud(lua_State* state) {
-  bind_cloud_type(state);
-  bind_distances_type(state);
-  module(state, "cloud")
-      .function(
-          "from_points", {"points"},
-          [](const std::vector<Eigen::Vector3d>& points) { return cloud::from_points(points); })
-      .function("crop", {"cloud", "volume"},
-                [](const cloud::cloud& c, const sol::table& volume) { return crop(c, volume); })
-      .function("distances", {"from", "to", "options"},
-                [](session& s, const cloud::cloud& from, const cloud::cloud& to, options& o) {
-                  const auto search = distance_options(o, s);
+void bind_preparation(module& m) {
+  m.function("crop", {"cloud", "volume"},
+             [](const cloud::cloud& c, const sol::table& volume) { return crop(c, volume); })
+      .function("without_statistical_outliers", {"cloud", "options"},
+                [](session& s, const cloud::cloud& c, options& o) {
+                  cloud::statistical_options how{.threads = s.threads};
+                  how.neighbours = o.count("neighbours", how.neighbours);
+                  how.ratio = o.number("ratio", how.ratio);
                   o.done();
-                  return distances(from, to, search);
+                  return cloud::without_statistical_outliers(c, how);
                 })
+      .function("without_radius_outliers", {"cloud", "options"},
+                [](session& s, const cloud::cloud& c, options& o) {
+                  cloud::radius_options how{.threads = s.threads};
+                  how.radius = o.number("radius", how.radius);
+                  how.neighbours = o.count("neighbours", how.neighbours);
+                  o.done();
+                  return cloud::without_radius_outliers(c, how);
+                })
+      .function("random_subset", {"cloud", "n", "options"},
+                [](const cloud::cloud& c, std::size_t n, options& o) {
+                  const auto seed = o.count("seed", 1);
+                  o.done();
+                  return cloud::random_subset(c, n, seed);
+                })
+      .function("with_normals", {"cloud", "options"},
+                [](session& s, const cloud::cloud& c, options& o) {
+                  cloud::normal_options how{.threads = s.threads};
+                  how.neighbours = o.count("neighbours", how.neighbours);
+                  o.done();
+                  return cloud::with_normals(c, how);
+                });
+}
+
+void bind_metrics(module& m) {
+  m.function("distances", {"from", "to", "options"},
+             [](session& s, const cloud::cloud& from, const cloud::cloud& to, options& o) {
+               const auto search = distance_options(o, s);
+               o.done();
+               return distances(from, to, search);
+             })
       .function("compare", {"est", "ref", "options"},
                 [](lua_State* l, session& s, const cloud::cloud& est, const cloud::cloud& ref,
                    options& o) {
@@ -215,7 +241,27 @@ void bind_cloud(lua_State* state) {
                   o.done();
                   const auto both = cloud::distances_both_ways(est, ref, search);
                   return as_record(l, cloud::score(both.to_reference, both.to_estimate, tau));
+                })
+      .function("normal_consistency", {"est", "ref"},
+                [](lua_State* l, session& s, const cloud::cloud& est, const cloud::cloud& ref) {
+                  const auto n = cloud::normal_consistency(est, ref, s.threads);
+                  record r(l);
+                  r.set("estimate_mean", n.estimate_mean).set("estimate_median", n.estimate_median);
+                  r.set("reference_mean", n.reference_mean);
+                  return r.set("reference_median", n.reference_median);
                 });
+}
+
+}  // namespace
+
+void bind_cloud(lua_State* state) {
+  bind_cloud_type(state);
+  bind_distances_type(state);
+  module m(state, "cloud");
+  m.function("from_points", {"points"},
+             [](const std::vector<Eigen::Vector3d>& points) { return cloud::from_points(points); });
+  bind_preparation(m);
+  bind_metrics(m);
 }
 
 }  // namespace aib::bind

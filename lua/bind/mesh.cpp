@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/box.hpp>
+#include <aib/mesh/distances.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/surface.hpp>
 #include <aib/mesh/transform.hpp>
@@ -38,6 +39,24 @@ void bind_mesh(lua_State* state) {
       .method("area", {}, [](const mesh::mesh& m) { return mesh::area(m); })
       .method("transformed", {"transform"},
               [](const mesh::mesh& m, const math::sim3& b_from_a) { return b_from_a * m; });
+  module(state, "mesh")
+      .function("distances", {"cloud", "mesh", "options"},
+                [](session& s, const cloud::cloud& points, const mesh::mesh& m, options& o) {
+                  const auto how = distance_options(o, s);
+                  o.done();
+                  return mesh::distances(points, m, how);
+                })
+      .function(
+          "compare", {"est", "ref", "options"},
+          [](lua_State* l, session& s, const cloud::cloud& est, const mesh::mesh& ref, options& o) {
+            const auto how = distance_options(o, s);
+            const auto tau = o.numbers("tau", {});
+            const auto* samples = o.object<cloud::cloud>("samples");
+            if (!samples) o.reject("samples", "points on the mesh (aib.sample.mesh) expected");
+            o.done();
+            return as_record(l, cloud::score(mesh::distances(est, ref, how),
+                                             cloud::distances(*samples, est, how), tau));
+          });
 }
 
 }  // namespace aib::bind

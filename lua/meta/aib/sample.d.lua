@@ -1,0 +1,55 @@
+---@meta aib.sample
+
+---Making points.
+---@class aib.sample
+local sample = {}
+
+---Exactly one of n, spacing and per_area.
+---@class aib.MeshSampleOptions
+---@field n? integer  # this many points
+---@field spacing? number  # one a square of this side, in the unit of the mesh
+---@field per_area? number  # this many a square unit
+---@field seed? integer  # default 1
+
+---@class aib.MeshSampleInfo
+---@field area number  # of the mesh, square units
+---@field density number  # points a square unit
+---@field floor number  # 0.5 / sqrt(density): an accuracy against these samples says nothing below it
+
+---Points on a mesh, uniform by area, with normals and, where the mesh has them, labels.
+---@param surface aib.Mesh
+---@param options aib.MeshSampleOptions
+---@return aib.Cloud points
+---@return aib.MeshSampleInfo info
+function sample.mesh(surface, options) end
+
+---@class aib.VoxelOptions
+---@field size number  # edge of a voxel
+---@field anchor? "world"|"open3d"  # where the lattice begins: world 0 (default), or as Open3D's
+---@field pick? "mean"|"centre"|"nearest"  # what stands for a voxel; nearest: its point nearest to the mean
+
+---One point for each voxel that has any.
+---@param points aib.Cloud
+---@param options aib.VoxelOptions
+---@return aib.Cloud points
+function sample.voxel(points, options) end
+
+---@class aib.UnprojectOptions
+---@field confidence? aib.DepthMap
+---@field min_confidence? number
+---@field rule? "raw"|"sigmoid"|"percentile"  # what a confidence is
+---@field stride? integer
+---@field pixel_offset? number  # where in its pixel a depth lies, default 0.5
+---@field depth? "planar"|"range"  # what a depth means
+---@field image? aib.Image  # colours of the points
+
+---The points of a depth map, in the world.
+---@param depth aib.DepthMap
+---@param camera aib.Camera
+---@param pose aib.Pose  # world from camera
+---@param options? aib.UnprojectOptions
+---@return aib.Cloud points
+---@return table info  # n_valid, n_unsure, n_unseen
+function sample.unproject(depth, camera, pose, options) end
+
+return sample
