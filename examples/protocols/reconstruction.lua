@@ -1,0 +1,90 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- Compares a reconstructed cloud with a cloud or a mesh: the everyday command, and with --icp and --normals the
+--- evaluation of CUT3R and pi3 (accuracy, completion and normal consistency, mean and median).
+---
+---   aib-lua reconstruction estimate.ply reference.ply --tau 0.02,0.05
+local aib = require "aib"
+
+--- A mesh where the file holds one, else nil and the cloud.
+local function read_reference(path)
+  local ok, mesh = pcall(aib.io.read_mesh, path)
+  if ok then return mesh, nil end
+  if aib.error_kind(mesh) ~= "format" then error(mesh, 0) end
+  return nil, aib.io.read_cloud(path)
+end
+
+--- The estimate on the reference, where an ICP is asked for.
+local function aligned(estimate, points, input, report)
+  if input.icp == 0 then return estimate end
+  local icp = aib.align.icp(estimate, points, { max_distance = input.icp })
+  report:add("align.fitness", icp.fitness, { better = "higher", n = icp.n_pairs })
+  report:add("align.rmse", icp.rmse, { unit = "m", better = "lower", n = icp.n_pairs })
+  if not icp.converged then report:note("alignment", "the ICP has not converged") end
+  return icp.transform * estimate
+end
+
+local function add_comparison(compared, input, report)
+  local how = { unit = "m", better = "lower", n = compared.n_estimate, options = {
+    voxel = input.voxel, max_distance = input.max_distance, rule = input.rule, icp = input.icp } }
+  for _, name in ipairs { "accuracy", "accuracy_median", "completeness", "completeness_median", "chamfer",
+    "chamfer_mean", "f1_distance", "hausdorff" } do
+    report:add("cloud." .. name, compared[name], how)
+  end
+  for _, tau in ipairs(input.tau) do
+    for _, name in ipairs { "precision", "recall", "f_score" } do
+      report:add(("cloud.%s@%gm"):format(name, tau), compared[name][tau], { better = "higher", n = compared.n_estimate })
+    end
+  end
+  if input.max_distance > 0 then
+    report:add("cloud.estimate_beyond", compared.estimate_beyond, { n = compared.n_estimate })
+    report:add("cloud.reference_beyond", compared.reference_beyond, { n = compared.n_reference })
+  end
+end
+
+local function add_normals(estimate, points, report)
+  local function with_normals(cloud) return cloud.has_normals and cloud or aib.cloud.with_normals(cloud) end
+  local n = aib.cloud.normal_consistency(with_normals(estimate), with_normals(points))
+  for _, name in ipairs { "estimate_mean", "estimate_median", "reference_mean", "reference_median" } do
+    report:add("cloud.normal_consistency_" .. name, n[name], { better = "higher" })
+  end
+end
+
+return aib.protocol {
+  name = "reconstruction",
+  title = "Reconstruction against a cloud or a mesh",
+  help = "Accuracy, completeness and what follows from them. Nothing is aligned unless --icp is given.",
+  inputs = {
+    estimate = { kind = "file", position = 1, help = "reconstructed cloud" },
+    reference = { kind = "file", position = 2, help = "cloud or mesh of the truth" },
+    tau = { kind = "list", of = "number", unit = "m", default = {}, help = "thresholds of precision, recall, F-score" },
+    max_distance = { kind = "number", unit = "m", default = 0, min = 0, help = "distances from here on are cut; 0: none" },
+    rule = { kind = "choice", choices = { "drop", "clamp" }, default = "drop", help = "what becomes of them" },
+    voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "thins both clouds to a point a voxel; 0: not" },
+    icp = { kind = "number", unit = "m", default = 0, min = 0, help = "aligns first, pairs up to this distance; 0: not" },
+    normals = { kind = "flag", help = "normal consistency, over 30 neighbours where there are no normals" },
+    samples = { kind = "integer", default = 1000000, min = 1, help = "points sampled on a mesh" },
+    seed = { kind = "integer", default = 1, min = 0, help = "of the sampling" },
+  },
+  run = function(input, report)
+    local estimate = aib.io.read_cloud(input.estimate)
+    local mesh, points = read_reference(input.reference)
+    if mesh then
+      local info
+      points, info = aib.sample.mesh(mesh, { n = input.samples, seed = input.seed })
+      report:note("samples", ("completeness by %d samples of the mesh, %.3g m apart"):format(#points, 2 * info.floor))
+    end
+    if input.voxel > 0 then
+      estimate = aib.sample.voxel(estimate, { size = input.voxel })
+      points = aib.sample.voxel(points, { size = input.voxel })
+    end
+    estimate = aligned(estimate, points, input, report)
+    local options = { tau = input.tau, rule = input.rule }
+    if input.max_distance > 0 then options.max_distance = input.max_distance end
+    if mesh then options.samples = points end
+    local compared = mesh and aib.mesh.compare(estimate, mesh, options) or aib.cloud.compare(estimate, points, options)
+    add_comparison(compared, input, report)
+    if input.normals then add_normals(estimate, points, report) end
+  end,
+}
