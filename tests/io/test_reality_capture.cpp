@@ -66,4 +66,8 @@ TEST_CASE("a wrong RealityCapture file is refused with its line") {
       doctest::Contains(
           "cameras.csv:2: reality_capture: heading: a number expected, found 'north'"),
       format_error);
+  CHECK_THROWS_WITH_AS(
+      read("#name,x,y,alt,heading,pitch,roll\na,1,2,high,0,0,0\n"),
+      doctest::Contains("cameras.csv:2: reality_capture: alt: a number expected, found 'high'"),
+      format_error);
 }

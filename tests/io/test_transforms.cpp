@@ -88,6 +88,7 @@ TEST_CASE("distortion chooses COLMAP's model") {
   };
   CHECK(model("") == "PINHOLE");
   CHECK(model(R"("k1": 0.1, "p2": 0.01, )") == "OPENCV");
+  CHECK(model(R"("camera_model": "SIMPLE_RADIAL", "k1": 0.1, )") == "OPENCV");
   CHECK(model(R"("k1": 0.1, "k3": 0.01, )") == "FULL_OPENCV");
   CHECK(model(R"("camera_model": "OPENCV_FISHEYE", "k4": 0.1, )") == "OPENCV_FISHEYE");
   CHECK(model(R"("camera_model": "EQUIRECTANGULAR", )") == "EQUIRECTANGULAR");

@@ -29,6 +29,12 @@ struct npz_options {
   std::uint64_t max_bytes = std::uint64_t{1} << 30;
 };
 
+/// What an array is, without its elements.
+struct array_info {
+  dtype type = dtype::f8;
+  std::vector<std::size_t> shape = {};
+};
+
 /// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
 /// come from the central directory, contents are checked against their CRC-32. Members are read
 /// when asked for.
@@ -52,7 +58,7 @@ class npz_file {
 
   /// Shape and type from the array's header alone.
   /// Throws as read does.
-  [[nodiscard]] array read_header(std::string_view name) const;
+  [[nodiscard]] array_info read_header(std::string_view name) const;
 
   /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
   [[nodiscard]] bool is_unreadable(std::string_view name) const;
@@ -185,14 +191,14 @@ inline array npz_file::read(std::string_view name) const {
   return parse_npy(std::move(bytes), inside);
 }
 
-inline array npz_file::read_header(std::string_view name) const {
+inline array_info npz_file::read_header(std::string_view name) const {
   const member& m = get(name);
   const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
   const auto preamble =
       detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
   const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
   detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
-  return {header.type, std::move(header.shape), {}};
+  return {header.type, std::move(header.shape)};
 }
 
 inline bool npz_file::is_unreadable(std::string_view name) const {

@@ -110,7 +110,7 @@ inline posed_images read_reality_capture(const std::filesystem::path& path,
     const double roll = table.number("roll");
     pose_matrix matrix;
     matrix.leftCols<3>() = detail::rotation_of_angles(heading, pitch, roll);
-    matrix.col(3) << table.number("x"), table.number("y"), table.number("alt");
+    matrix.col(3) = Eigen::Vector3d{table.number("x"), table.number("y"), table.number("alt")};
     images.trajectory.names.emplace_back(table.text("name"));
     images.trajectory.world_from_camera.push_back(
         pose_from_matrix(matrix, {pose_convention::world_from_camera, camera_axes::opengl}));

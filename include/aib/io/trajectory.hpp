@@ -231,7 +231,10 @@ inline pose::trajectory read_trajectory(const std::filesystem::path& path,
 inline std::map<std::string, math::camera> read_cameras(const std::filesystem::path& path,
                                                         const trajectory_options& options) {
   const posed_images images = read_posed_images(path, options);
-  if (images.cameras.empty()) throw format_error(path, "no intrinsics in the file");
+  if (images.cameras.empty()) {
+    throw format_error(path,
+                       "no intrinsics in the file, or none without the images' width and height");
+  }
   std::map<std::string, math::camera> cameras;
   const std::vector<std::string>& names = images.trajectory.names;
   for (std::size_t i = 0; i < images.cameras.size(); ++i)

@@ -11,6 +11,7 @@
 #include <aib/math/camera.hpp>
 #include <aib/pose/trajectory.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -18,6 +19,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,13 @@ inline pose_matrix read_transform_matrix(const json_node& rows) {
   return matrix;
 }
 
+/// Whether nerfstudio takes the model for a perspective camera with OpenCV's distortion.
+inline bool is_perspective(std::string_view model) {
+  constexpr std::array<std::string_view, 6> models{
+      "", "SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
+  return std::find(models.begin(), models.end(), model) != models.end();
+}
+
 /// Intrinsics of a frame: its own members, else those of the file.
 class transforms_intrinsics {
  public:
@@ -89,9 +98,7 @@ class transforms_intrinsics {
       return of(camera_model::opencv_fisheye,
                 {*fx, fy, cx, cy, k("k1"), k("k2"), k("k3"), k("k4")});
     }
-    const bool perspective =
-        model.empty() || model == "OPENCV" || model == "PINHOLE" || model == "SIMPLE_PINHOLE";
-    if (!perspective || k("k4") != 0) return std::nullopt;
+    if (!is_perspective(model) || k("k4") != 0) return std::nullopt;
     if (k("k3") != 0) {
       return of(camera_model::full_opencv,
                 {*fx, fy, cx, cy, k("k1"), k("k2"), k("p1"), k("p2"), k("k3"), 0, 0, 0});
