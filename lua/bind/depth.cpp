@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/depth/error_image.hpp>
 #include <aib/depth/errors.hpp>
 #include <aib/depth/fit.hpp>
+#include <aib/depth/presets.hpp>
 #include <aib/raster/color.hpp>
 #include <aib/raster/downsample.hpp>
 #include <aib/stats/bootstrap.hpp>
@@ -58,9 +60,22 @@ depth::affine affine_option(options& o, const char* name) {
   return {*scale, shift.value_or(0)};
 }
 
-/// The options of a frame's errors but the mask.
-depth::error_options error_options(options& o) {
-  depth::error_options e;
+depth::accumulate_options preset_option(options& o) {
+  using enum depth::preset;
+  const auto chosen = o.choice("preset", paper,
+                               {{"paper", paper},
+                                {"kitti", kitti},
+                                {"monodepth2", monodepth2},
+                                {"cut3r", cut3r},
+                                {"pi3", pi3}});
+  return depth::options_of(chosen);
+}
+
+/// The options of a frame's errors but the mask, on top of those of a preset.
+depth::error_options error_options(options& o, depth::error_options e) {
+  using enum depth::crop_rule;
+  e.crop = o.choice("crop", e.crop, {{"none", none}, {"garg", garg}, {"eigen", eigen}});
+  if (o.has("transform")) e.align = alignment::none;
   e.align = o.choice("align", e.align, alignments);
   e.min = o.number("min", e.min);
   e.max = o.number("max", e.max);
@@ -239,15 +254,33 @@ void bind_depth(lua_State* state) {
       .function(
           "errors", {"estimate", "reference", "options"},
           [](lua_State* l, const depth_map& estimate, const depth_map& reference, options& o) {
-            depth::error_options e = error_options(o);
+            depth::error_options e = error_options(o, preset_option(o).errors);
             const auto mask = mask_option(o);
             o.done();
             e.mask = mask.view();
             return as_record(l, depth::errors(estimate, reference, e));
           })
+      .function("error_image", {"estimate", "reference", "options"},
+                [](const depth_map& estimate, const depth_map& reference, options& o) {
+                  depth::error_image_options how;
+                  how.errors = error_options(o, preset_option(o).errors);
+                  how.near = o.number("near", how.near);
+                  how.far = o.number("far", how.far);
+                  how.largest = o.number("largest", how.largest);
+                  const auto mask = mask_option(o);
+                  o.done();
+                  how.errors.mask = mask.view();
+                  return depth::error_image(estimate, reference, how);
+                })
       .function("accumulate", {"options"},
                 [](options& o) {
-                  const auto e = error_options(o);
+                  const auto preset = preset_option(o);
+                  const auto e = error_options(o, preset.errors);
+                  if (preset.align_over == depth::scope::sequence && e.align != alignment::none) {
+                    o.reject("preset",
+                             "it fits a whole sequence: give the `transform` that "
+                             "aib.depth.fit finds");
+                  }
                   o.done();
                   return accumulator(e);
                 })

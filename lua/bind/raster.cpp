@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/raster/color.hpp>
+#include <aib/raster/draw.hpp>
 
 #include "kit.hpp"
 #include <algorithm>
@@ -73,9 +74,16 @@ void bind_raster(lua_State* state) {
         return mask;
       });
   module(state, "raster")
-      .function("labels", {"rows"}, [](const std::vector<std::vector<std::uint16_t>>& rows) {
-        return labels_of_rows(rows);
-      });
+      .function(
+          "labels", {"rows"},
+          [](const std::vector<std::vector<std::uint16_t>>& rows) { return labels_of_rows(rows); })
+      .function("contact_sheet", {"pictures", "options"},
+                [](const std::vector<color_image>& pictures, options& o) {
+                  const std::size_t columns = o.count("columns", 3);
+                  const std::size_t width = o.count("width", 480);
+                  o.done();
+                  return raster::contact_sheet(pictures, columns, width);
+                });
 }
 
 }  // namespace aib::bind

@@ -62,4 +62,23 @@ return aib.test {
     t:near(aib.depth.errors(estimate, reference, { transform = whole }).scale, whole.scale, 0)
     t:raises("table with `scale`", aib.depth.errors, estimate, reference, { transform = { 1 } })
   end,
+
+  ["presets are options of other scripts"] = function(t)
+    local estimate, reference = maps()
+    t:equal(aib.depth.errors(estimate, reference, { preset = "cut3r", max = 4 }).n_valid, 2)
+    t:near(aib.depth.errors(estimate, reference, { preset = "cut3r" }).scale, 0.5, 0)
+    t:raises("fits a whole sequence", aib.depth.accumulate, { preset = "pi3" })
+    local fit = aib.depth.fit({ align = "median_lower" }):add(estimate, reference):result()
+    local frames = aib.depth.accumulate { preset = "pi3", transform = fit }
+    t:near(frames:add(estimate, reference):result().scale, 0.5, 0)
+  end,
+
+  ["an error image is three panels, a contact sheet many pictures"] = function(t)
+    local estimate, reference = maps()
+    local picture = aib.depth.error_image(estimate, reference, { near = 1, far = 4 })
+    t:equal(picture.width, 3 * 2 + 4 * 6)
+    t:equal(#picture:at(1, 1), 3)
+    local sheet = aib.raster.contact_sheet({ picture, picture }, { columns = 2, width = 30 })
+    t:equal(sheet.width, 2 * 36 + 6)
+  end,
 }

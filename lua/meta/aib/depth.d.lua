@@ -40,6 +40,8 @@ function depth.downsample(map, width, height, options) end
 ---@field shift number
 
 ---@class aib.DepthErrorOptions
+---@field preset? "paper"|"kitti"|"monodepth2"|"cut3r"|"pi3"  # options of a published script, which the others change
+---@field crop? "none"|"garg"|"eigen"  # the part that is evaluated
 ---@field align? "none"|"median"|"median_lower"|"scale"|"scale_l1"|"scale_shift"|"log"  # fitted to each frame; none by default
 ---@field min? number  # a reference counts above it, exclusive
 ---@field max? number  # and below it, exclusive
@@ -76,6 +78,14 @@ function depth.downsample(map, width, height, options) end
 ---@param options? aib.DepthErrorOptions|{ mask: aib.LabelImage }
 ---@return aib.DepthErrors errors
 function depth.errors(estimate, reference, options) end
+
+---A picture of three panels: the estimate as aligned, the reference, and the signed relative error; blue is near or
+---too near, yellow far, red too far, hatched grey without a value. Written by `aib.io.write_image`.
+---@param estimate aib.DepthMap
+---@param reference aib.DepthMap
+---@param options? aib.DepthErrorOptions|{ mask: aib.LabelImage, near: number, far: number, largest: number }  # ends of the scales; by quantiles where absent
+---@return aib.Image picture
+function depth.error_image(estimate, reference, options) end
 
 ---Errors of many frames, mean of frames or pooled over pixels.
 ---@class aib.DepthAccumulator

@@ -37,4 +37,10 @@ function label_image:mask(label) end
 ---@return aib.LabelImage labels
 function raster.labels(rows) end
 
+---Pictures in rows, each shrunk to `width` pixels in the shape of the first.
+---@param pictures aib.Image[]
+---@param options? { columns: integer, width: integer }  # 3 and 480
+---@return aib.Image sheet
+function raster.contact_sheet(pictures, options) end
+
 return raster
