@@ -5,8 +5,9 @@
 usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRECOMPILED]
        compile_header.py COMPILER BUILD_FOLDER HEADER PRECOMPILED
 
-The second form writes the precompiled header that the first may begin with. An empty report is a header that compiles. Flags are those the tests are built with. A header
-whose library is not here is skipped.
+The second form writes the precompiled header that the first may begin with. An empty report is a
+header that compiles. Flags are those the tests are built with. A header whose library is not here
+is skipped.
 """
 
 import json
