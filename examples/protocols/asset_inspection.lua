@@ -93,6 +93,15 @@ local function score_models(models, truth, input, cell)
   return scored
 end
 
+--- Both tables in one.
+local function with(a, b)
+  local merged = {}
+  for _, options in ipairs { a or {}, b } do
+    for key, value in pairs(options) do merged[key] = value end
+  end
+  return merged
+end
+
 -- Depth ---------------------------------------------------------------------------------------------------------------
 
 --- What is told of the frames; what is of a length needs the scale of the alignment.
@@ -121,7 +130,8 @@ local function score_depth(unit, truth, files, frame, input, cell)
   for _, metric in ipairs(depth_metrics) do
     local known = frame.scale or not metric.of_length
     cell:add("depth." .. metric.name, known and mean[metric.name] or nil, {
-      better = metric.better, n = mean.n_defined, convention = "mean over frames", options = how,
+      better = metric.better, n = mean.n_defined, convention = "mean over frames",
+      options = metric.of_length and with(frame.how, how) or how,
     })
   end
   local empty = #errors - mean.n_defined
@@ -152,12 +162,16 @@ local function score_cloud(unit, truth, files, frame, input, cell)
   local compared = cell:attempt(function()
     return aib.cloud.compare(cloud, truth.reference, { tau = input.tau })
   end, "points") or { precision = {}, recall = {}, f_score = {} }
+  local sampled = not truth.points
+  local how = with(frame.how, { samples = sampled and input.samples or nil, seed = sampled and input.seed or nil })
   for _, name in ipairs(distance_metrics) do
-    cell:add("cloud." .. name, compared[name], { unit = "m", better = "lower", n = #cloud })
+    cell:add("cloud." .. name, compared[name], { unit = "m", better = "lower", n = #cloud, options = how })
   end
   for _, tau in ipairs(input.tau) do
     for _, name in ipairs { "precision", "recall", "f_score" } do
-      cell:add(("cloud.%s@%gm"):format(name, tau), compared[name][tau], { better = "higher", n = #cloud })
+      cell:add(("cloud.%s@%gm"):format(name, tau), compared[name][tau], {
+        better = "higher", n = #cloud, options = how,
+      })
     end
   end
   cell:add("cloud.n_outside", #all - #cloud, { n = #all })
@@ -176,7 +190,7 @@ local function frame_of(unit, models, scored)
   if (unit.result.frame or own and "method" or "reference") == "reference" then return { scale = 1, model = model } end
   local alignment = model and model.alignment
   if not alignment then return { model = model } end
-  return { transform = alignment.transform, scale = alignment.transform.scale, model = model }
+  return { transform = alignment.transform, scale = alignment.transform.scale, model = model, how = model.how }
 end
 
 local function evaluate(unit, truth, files, input, cell)
