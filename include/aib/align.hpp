@@ -5,6 +5,8 @@
 /// @file
 /// Transforms that bring an estimate onto a reference.
 
+#include <aib/align/batches.hpp>
+#include <aib/align/icp.hpp>
 #include <aib/align/outliers.hpp>
 #include <aib/align/pose_fit.hpp>
 #include <aib/align/ransac.hpp>

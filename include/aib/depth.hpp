@@ -6,7 +6,10 @@
 /// Depth maps and their errors.
 
 #include <aib/depth/accumulate.hpp>
+#include <aib/depth/crop.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/depth/error_image.hpp>
 #include <aib/depth/error_sums.hpp>
 #include <aib/depth/errors.hpp>
 #include <aib/depth/fit.hpp>
+#include <aib/depth/presets.hpp>

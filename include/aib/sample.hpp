@@ -6,3 +6,5 @@
 /// Clouds from meshes, depth maps and voxels.
 
 #include <aib/sample/mesh.hpp>
+#include <aib/sample/unproject.hpp>
+#include <aib/sample/voxel.hpp>

@@ -13,3 +13,4 @@
 #include <aib/search/nearest_one.hpp>
 #include <aib/search/nearest_packet.hpp>
 #include <aib/search/radix_sort.hpp>
+#include <aib/search/triangle_tree.hpp>

@@ -5,10 +5,13 @@
 // Compile with -std=c++20 -ffp-contract=off: results are then the same bits on every machine.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <nanoflann.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,9 +21,11 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <csetjmp>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fcntl.h>
@@ -482,8 +487,18 @@ class random_engine {
 /// The same bits on every machine: each operation is the IEEE one on each lane, nothing is
 /// contracted. `min(a, b)` and `max(a, b)` give `b` where the lanes are unordered. `less(a, b)` has
 /// bit i set where a < b in lane i. `choose(a, b, x, y)` is x where a < b, else y.
-/// `load` and `store` need no alignment.
+/// `load` and `store` need no alignment. `convert` loads floats into doubles. Of doubles that are
+/// positive and normal, `mantissa` is in [1, 2) and `exponent` the power of 2 beside it.
 namespace aib {
+
+namespace detail {
+
+inline constexpr std::int64_t fraction_bits = 0x000fffffffffffff;
+/// The exponent bits of x behind the leading bits of 2^52 make the double 2^52 + 1023 + exponent.
+inline constexpr double exponent_offset = 0x1p52 + 1023;
+
+}  // namespace detail
+
 inline namespace AIB_ISA {
 
 #if !defined(AIB_PLAIN) && defined(__AVX2__)
@@ -516,6 +531,7 @@ struct f64x4 {
   __m256d v;
 
   static f64x4 load(const double* p) { return {_mm256_loadu_pd(p)}; }
+  static f64x4 convert(const float* p) { return {_mm256_cvtps_pd(_mm_loadu_ps(p))}; }
   static f64x4 broadcast(double x) { return {_mm256_set1_pd(x)}; }
   void store(double* p) const { _mm256_storeu_pd(p, v); }
 
@@ -531,6 +547,17 @@ struct f64x4 {
   }
   friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
     return {_mm256_blendv_pd(y.v, x.v, _mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ))};
+  }
+  friend f64x4 mantissa(f64x4 a) {
+    const __m256d one = _mm256_set1_pd(1);
+    const __m256d fraction = _mm256_castsi256_pd(_mm256_set1_epi64x(detail::fraction_bits));
+    return {_mm256_or_pd(_mm256_and_pd(a.v, fraction), one)};
+  }
+  friend f64x4 exponent(f64x4 a) {
+    const __m256i shifted = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 52);
+    const __m256d offset = _mm256_set1_pd(0x1p52);
+    return {_mm256_sub_pd(_mm256_or_pd(_mm256_castsi256_pd(shifted), offset),
+                          _mm256_set1_pd(detail::exponent_offset))};
   }
 };
 
@@ -580,6 +607,10 @@ struct f64x4 {
   __m128d lo, hi;
 
   static f64x4 load(const double* p) { return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)}; }
+  static f64x4 convert(const float* p) {
+    const __m128 floats = _mm_loadu_ps(p);
+    return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
+  }
   static f64x4 broadcast(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
   void store(double* p) const {
     _mm_storeu_pd(p, lo);
@@ -612,6 +643,21 @@ struct f64x4 {
     };
     return {half(_mm_cmplt_pd(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_pd(a.hi, b.hi), x.hi, y.hi)};
   }
+  friend f64x4 mantissa(f64x4 a) {
+    const auto half = [](__m128d x) {
+      const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
+      return _mm_or_pd(_mm_and_pd(x, fraction), _mm_set1_pd(1));
+    };
+    return {half(a.lo), half(a.hi)};
+  }
+  friend f64x4 exponent(f64x4 a) {
+    const auto half = [](__m128d x) {
+      const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(x), 52));
+      return _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)),
+                        _mm_set1_pd(detail::exponent_offset));
+    };
+    return {half(a.lo), half(a.hi)};
+  }
 };
 
 #else
@@ -625,6 +671,11 @@ struct plain_lanes {
   static plain_lanes load(const Scalar* p) {
     plain_lanes out;
     std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static plain_lanes convert(const float* p) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = p[i];
     return out;
   }
   static plain_lanes broadcast(Scalar x) {
@@ -673,6 +724,17 @@ struct plain_lanes {
     plain_lanes out;
     for (std::size_t i = 0; i < Width; ++i) out.v[i] = a.v[i] < b.v[i] ? x.v[i] : y.v[i];
     return out;
+  }
+  friend plain_lanes mantissa(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      const auto bits = std::bit_cast<std::int64_t>(x) & detail::fraction_bits;
+      return std::bit_cast<Scalar>(bits | std::bit_cast<std::int64_t>(Scalar{1}));
+    });
+  }
+  friend plain_lanes exponent(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      return static_cast<Scalar>((std::bit_cast<std::int64_t>(x) >> 52) - 1023);
+    });
   }
 };
 
@@ -825,64 +887,314 @@ inline double camera::cy() const {
 
 namespace aib::math {
 
-namespace detail {
-
 inline namespace AIB_ISA {
 
-/// The exponent of a positive normal number, as a double.
-inline double exponent(double x) {
-  // The exponent bits put into the mantissa of 2^52 make 2^52 + exponent + 1023.
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x) >> 52;
-  return std::bit_cast<double>(bits | 0x4330000000000000u) - (0x1p52 + 1023);
+/// ln(a / b) in four lanes, of positive, finite, normal doubles: within 3e-16 of the largest of 1
+/// and the result. The ratio never overflows; equal numbers give exactly 0; the same bits on every
+/// machine.
+///
+/// ln(a / b) = 2 atanh((a - b) / (a + b)), taken on the mantissas by its Taylor series.
+inline f64x4 log_ratio(f64x4 a, f64x4 b) {
+  const f64x4 zero = f64x4::broadcast(0), one = f64x4::broadcast(1);
+  const f64x4 half = f64x4::broadcast(0.5), root = f64x4::broadcast(std::numbers::sqrt2);
+
+  // The larger mantissa is halved where the ratio leaves [1 / sqrt 2, sqrt 2].
+  f64x4 ma = mantissa(a), mb = mantissa(b);
+  const f64x4 halve_a = choose(root * mb, ma, one, zero);
+  const f64x4 halve_b = choose(root * ma, mb, one, zero);
+  ma = ma - half * ma * halve_a;
+  mb = mb - half * mb * halve_b;
+  const f64x4 e = exponent(a) - exponent(b) + (halve_a - halve_b);
+
+  // |s| <= 0.1716: the first term left out is below 3e-17 of the sum.
+  const f64x4 s = (ma - mb) / (ma + mb);
+  const f64x4 z = s * s;
+  const auto term = [&](f64x4 higher, double coefficient) {
+    return higher * z + f64x4::broadcast(coefficient);
+  };
+  f64x4 series = term(f64x4::broadcast(1.0 / 19), 1.0 / 17);
+  series = term(term(series, 1.0 / 15), 1.0 / 13);
+  series = term(term(series, 1.0 / 11), 1.0 / 9);
+  series = term(term(series, 1.0 / 7), 1.0 / 5);
+  series = term(series, 1.0 / 3);
+  const f64x4 twice = s + s;
+  // ln 2 in two parts: the first has few enough bits for e * ln2_high to be exact.
+  const f64x4 ln2_high = f64x4::broadcast(0x1.62e42fefa3p-1);
+  const f64x4 ln2_low = f64x4::broadcast(0x1.3de6af278ece6p-42);
+  return e * ln2_high + (twice + twice * (z * series) + e * ln2_low);
 }
 
-/// The number with its exponent replaced by 0: in [1, 2).
-inline double mantissa(double x) {
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-  return std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u);
+/// The same of two numbers.
+inline double log_ratio(double a, double b) {
+  double result[4];
+  log_ratio(f64x4::broadcast(a), f64x4::broadcast(b)).store(result);
+  return result[0];
 }
 
 }  // namespace AIB_ISA
+
+}  // namespace aib::math
+
+// aib/math/projection.hpp
+
+namespace aib::math {
+
+/// Pixel of a point, of every camera model; nothing where the model has none: behind a perspective
+/// camera, beyond the range of a division model or of EUCM, at the centre.
+///
+/// p_in_camera   x right, y down, z forward, any unit
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+/// Source: COLMAP 4.2, src/colmap/sensor/models.h; FOV: Devernay and Faugeras 2001; division:
+/// Fitzgibbon, CVPR 2001; EUCM: Khomutenko, Garcia, Martinet, RA-L 2016.
+std::optional<Eigen::Vector2d> project(const camera& camera, const Eigen::Vector3d& p_in_camera);
+
+/// Direction in the camera, unit length, of the points that project to a pixel; nothing where no
+/// point does. The inverse of `project` to 1e-9 pixels within the range where the distortion grows.
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+std::optional<Eigen::Vector3d> unproject(const camera& camera, const Eigen::Vector2d& pixel);
+
+namespace detail {
+
+using point2 = Eigen::Vector2d;
+
+/// Parameters behind focal length and principal point. Throws argument_error if they are too few or
+/// too many.
+inline std::span<const double> distortion_parameters(const camera& c) {
+  const camera_model_info& model = info(c.model);
+  if (c.parameters.size() != model.n_parameters) {
+    throw argument_error(message("camera: ", model.name, " expects ", model.n_parameters,
+                                 " parameters, found ", c.parameters.size()));
+  }
+  return std::span(c.parameters).subspan(model.n_focal == 0 ? 2 : model.n_focal + 2);
+}
+
+/// How a direction becomes a point of the plane that is distorted.
+enum class image_plane { perspective, equidistant, other };
+
+constexpr image_plane plane_of(camera_model model) {
+  switch (model) {
+    case camera_model::simple_pinhole:
+    case camera_model::pinhole:
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::opencv:
+    case camera_model::full_opencv:
+    case camera_model::fov:
+      return image_plane::perspective;
+    case camera_model::opencv_fisheye:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::thin_prism_fisheye:
+    case camera_model::rad_tan_thin_prism_fisheye:
+    case camera_model::simple_fisheye:
+    case camera_model::fisheye:
+      return image_plane::equidistant;
+    default:
+      return image_plane::other;
+  }
+}
+
+/// 1 + k[0] r2 + k[1] r2^2 + ...
+inline double radial(std::span<const double> k, double r2) {
+  double sum = 0;
+  for (std::size_t i = k.size(); i > 0; --i) sum = (sum + k[i - 1]) * r2;
+  return 1 + sum;
+}
+
+/// Decentring of Brown: p1 is the weight of the y axis, p2 of the x axis.
+inline point2 decentred(const point2& p, double p1, double p2) {
+  const double xy = 2 * p.x() * p.y(), r2 = p.squaredNorm();
+  return {p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
+}
+
+inline point2 distort_full_opencv(std::span<const double> k, const point2& p) {
+  const double numerator[] = {k[0], k[1], k[4]}, r2 = p.squaredNorm();
+  return p * (radial(numerator, r2) / radial(k.subspan(5, 3), r2)) + decentred(p, k[2], k[3]);
+}
+
+inline point2 distort_fov(double omega, const point2& p) {
+  const double r = p.norm();
+  if (omega == 0) return p;
+  const double slope = 2 * std::tan(omega / 2);
+  return p * (r < 1e-12 ? slope / omega : std::atan(r * slope) / (r * omega));
+}
+
+inline point2 distort_thin_prism(std::span<const double> k, const point2& p) {
+  const double radii[] = {k[0], k[1], k[4], k[5]}, r2 = p.squaredNorm();
+  return p * radial(radii, r2) + decentred(p, k[2], k[3]) + r2 * point2(k[6], k[7]);
+}
+
+inline point2 distort_rad_tan_thin_prism(std::span<const double> k, const point2& p) {
+  const point2 q = p * radial(k.first(6), p.squaredNorm());
+  const double r2 = q.squaredNorm();
+  return q + decentred(q, k[7], k[6]) +
+         point2(k[8] * r2 + k[9] * r2 * r2, k[10] * r2 + k[11] * r2 * r2);
+}
+
+/// Distorted point of the image plane of a model that has one.
+inline point2 distort(camera_model model, std::span<const double> k, const point2& p) {
+  switch (model) {
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::opencv_fisheye:
+      return p * radial(k, p.squaredNorm());
+    case camera_model::opencv:
+      return p * radial(k.first(2), p.squaredNorm()) + decentred(p, k[2], k[3]);
+    case camera_model::full_opencv:
+      return distort_full_opencv(k, p);
+    case camera_model::fov:
+      return distort_fov(k[0], p);
+    case camera_model::thin_prism_fisheye:
+      return distort_thin_prism(k, p);
+    case camera_model::rad_tan_thin_prism_fisheye:
+      return distort_rad_tan_thin_prism(k, p);
+    default:
+      return p;
+  }
+}
+
+inline Eigen::Matrix2d distortion_slope(camera_model model,
+                                        std::span<const double> k,
+                                        const point2& p) {
+  constexpr double step = 1e-6;
+  Eigen::Matrix2d slope;
+  for (int axis = 0; axis < 2; ++axis) {
+    const point2 aside = step * point2::Unit(axis);
+    slope.col(axis) = (distort(model, k, p + aside) - distort(model, k, p - aside)) / (2 * step);
+  }
+  return slope;
+}
+
+/// The point that `distort` takes to `goal`, by Newton's method from there. Nothing where the steps
+/// end beyond the range in which the distortion grows.
+inline std::optional<point2> undistort(camera_model model,
+                                       std::span<const double> k,
+                                       const point2& goal) {
+  point2 p = goal;
+  for (int round = 0; round < 50; ++round) {
+    const point2 miss = distort(model, k, p) - goal;
+    if (!miss.allFinite()) return std::nullopt;
+    if (miss.norm() <= 1e-15 * (1 + goal.norm())) break;
+    p -= distortion_slope(model, k, p).inverse() * miss;
+  }
+  const bool there = (distort(model, k, p) - goal).norm() <= 1e-13 * (1 + goal.norm());
+  const bool this_side = p.dot(goal) > 0 || goal.norm() < 1e-2;
+  if (!there || !this_side || !(distortion_slope(model, k, p).determinant() > 0))
+    return std::nullopt;
+  return p;
+}
+
+inline std::optional<point2> on_plane(image_plane plane, const Eigen::Vector3d& p) {
+  if (plane == image_plane::perspective) {
+    if (!(p.z() > 0)) return std::nullopt;
+    return point2(p.head<2>() / p.z());
+  }
+  const double r = p.head<2>().norm();
+  if (r == 0) return p.z() > 0 ? std::optional(point2(0, 0)) : std::nullopt;
+  return point2(p.head<2>() * (std::atan2(r, p.z()) / r));
+}
+
+inline std::optional<Eigen::Vector3d> off_plane(image_plane plane, const point2& p) {
+  if (plane == image_plane::perspective) return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
+  const double angle = p.norm();
+  if (angle > std::numbers::pi) return std::nullopt;
+  const double share = angle == 0 ? 1 : std::sin(angle) / angle;
+  return Eigen::Vector3d(share * p.x(), share * p.y(), std::cos(angle));
+}
+
+/// The undistorted point of a division model is (x, y, 1 + k r^2).
+inline std::optional<point2> project_division(double k, const Eigen::Vector3d& p) {
+  const double r2 = p.head<2>().squaredNorm();
+  // (x, y) s with s z = 1 + k r2 s^2: the root that is 1 / z without distortion.
+  const double root = p.z() * p.z() - 4 * k * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double denominator = p.z() + std::sqrt(root);
+  if (!(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() * (2 / denominator));
+}
+
+inline std::optional<point2> project_eucm(double alpha, double beta, const Eigen::Vector3d& p) {
+  const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
+  const double w = alpha > 0.5 ? (1 - alpha) / alpha : alpha / (1 - alpha);
+  const double denominator = alpha * d + (1 - alpha) * p.z();
+  if (!(p.z() > -w * d) || !(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() / denominator);
+}
+
+inline std::optional<Eigen::Vector3d> unproject_eucm(double alpha, double beta, const point2& p) {
+  const double r2 = p.squaredNorm();
+  const double root = 1 - (2 * alpha - 1) * beta * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(root) + 1 - alpha);
+  return Eigen::Vector3d(p.x(), p.y(), z).normalized();
+}
+
+/// Longitude to the right and latitude downwards over the whole image.
+inline std::optional<point2> project_sphere(double width, double height, const Eigen::Vector3d& p) {
+  if (p.squaredNorm() == 0) return std::nullopt;
+  const double longitude = std::atan2(p.x(), p.z());
+  const double latitude = std::atan2(p.y(), std::hypot(p.x(), p.z()));
+  return point2((longitude / (2 * std::numbers::pi) + 0.5) * width,
+                (latitude / std::numbers::pi + 0.5) * height);
+}
+
+inline Eigen::Vector3d unproject_sphere(double width, double height, const point2& pixel) {
+  const double longitude = 2 * std::numbers::pi * (pixel.x() / width - 0.5);
+  const double latitude = std::numbers::pi * (pixel.y() / height - 0.5);
+  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+          std::cos(latitude) * std::cos(longitude)};
+}
 
 }  // namespace detail
 
-inline namespace AIB_ISA {
-
-/// ln(a / b) of two positive, finite, normal doubles, within 3e-16 of the largest of 1 and the
-/// result. The ratio never overflows; equal numbers give exactly 0.
-///
-/// Free of branches, calls and tables, so that a loop over it becomes vector code; the same bits on
-/// every machine. ln(a / b) = 2 atanh((a - b) / (a + b)) on the mantissas, by its Taylor series.
-inline double log_ratio(double a, double b) {
-  // The larger mantissa is halved where the ratio leaves [1 / sqrt 2, sqrt 2].
-  double ma = detail::mantissa(a);
-  double mb = detail::mantissa(b);
-  const double half_a = ma > std::numbers::sqrt2 * mb ? 1.0 : 0.0;
-  const double half_b = mb > std::numbers::sqrt2 * ma ? 1.0 : 0.0;
-  ma -= 0.5 * ma * half_a;
-  mb -= 0.5 * mb * half_b;
-  const double e = detail::exponent(a) - detail::exponent(b) + (half_a - half_b);
-
-  // |s| <= 0.1716: the first term left out is below 3e-17 of the sum.
-  const double s = (ma - mb) / (ma + mb);
-  const double z = s * s;
-  double series = 1.0 / 19;
-  series = series * z + 1.0 / 17;
-  series = series * z + 1.0 / 15;
-  series = series * z + 1.0 / 13;
-  series = series * z + 1.0 / 11;
-  series = series * z + 1.0 / 9;
-  series = series * z + 1.0 / 7;
-  series = series * z + 1.0 / 5;
-  series = series * z + 1.0 / 3;
-  const double mantissas = 2 * s + 2 * s * (z * series);
-  // ln 2 in two parts: the first has few enough bits for e * ln2_high to be exact.
-  constexpr double ln2_high = 0x1.62e42fefa3p-1;
-  constexpr double ln2_low = 0x1.3de6af278ece6p-42;
-  return e * ln2_high + (mantissas + e * ln2_low);
+inline std::optional<Eigen::Vector2d> project(const camera& camera,
+                                              const Eigen::Vector3d& p_in_camera) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!p_in_camera.allFinite()) return std::nullopt;
+  std::optional<detail::point2> p;
+  switch (camera.model) {
+    case camera_model::equirectangular:
+      return detail::project_sphere(camera.parameters[0], camera.parameters[1], p_in_camera);
+    case camera_model::simple_division:
+    case camera_model::division:
+      p = detail::project_division(k[0], p_in_camera);
+      break;
+    case camera_model::eucm:
+      p = detail::project_eucm(k[0], k[1], p_in_camera);
+      break;
+    default:
+      p = detail::on_plane(detail::plane_of(camera.model), p_in_camera);
+      if (p) p = detail::distort(camera.model, k, *p);
+  }
+  if (!p) return std::nullopt;
+  return Eigen::Vector2d(camera.fx() * p->x() + camera.cx(), camera.fy() * p->y() + camera.cy());
 }
 
-}  // namespace AIB_ISA
+inline std::optional<Eigen::Vector3d> unproject(const camera& camera,
+                                                const Eigen::Vector2d& pixel) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!pixel.allFinite()) return std::nullopt;
+  if (camera.model == camera_model::equirectangular)
+    return detail::unproject_sphere(camera.parameters[0], camera.parameters[1], pixel);
+  const detail::point2 p((pixel.x() - camera.cx()) / camera.fx(),
+                         (pixel.y() - camera.cy()) / camera.fy());
+  switch (camera.model) {
+    case camera_model::simple_division:
+    case camera_model::division:
+      return Eigen::Vector3d(p.x(), p.y(), 1 + k[0] * p.squaredNorm()).normalized();
+    case camera_model::eucm:
+      return detail::unproject_eucm(k[0], k[1], p);
+    default: {
+      const auto undistorted = detail::undistort(camera.model, k, p);
+      if (!undistorted) return std::nullopt;
+      return detail::off_plane(detail::plane_of(camera.model), *undistorted);
+    }
+  }
+}
 
 }  // namespace aib::math
 
@@ -1388,6 +1700,122 @@ class image {
 
 }  // namespace aib::raster
 
+// aib/raster/color.hpp
+
+namespace aib::raster {
+
+/// Red, green, blue, 8 bits each, sRGB as in PNG and JPEG files.
+using rgb = std::array<std::uint8_t, 3>;
+
+using color_image = image<rgb>;
+
+/// A whole number a pixel: classes, or a mask where 0 is outside.
+using label_image = image<std::uint16_t>;
+
+/// 1 where the label is not 0.
+[[nodiscard]] inline image<std::uint8_t> mask_of(const label_image& labels) {
+  image<std::uint8_t> mask(labels.width(), labels.height());
+  for (std::size_t i = 0; i < labels.size(); ++i) mask.data()[i] = labels.data()[i] != 0;
+  return mask;
+}
+
+}  // namespace aib::raster
+
+// aib/raster/colormap.hpp
+
+namespace aib::raster {
+
+/// A colour whose distances are those that people see.
+/// Source: Ottosson, "A perceptual color space for image processing", 2020.
+struct oklab {
+  double lightness;  ///< 0 black, 1 white
+  double a;          ///< green to red
+  double b;          ///< blue to yellow
+};
+
+[[nodiscard]] oklab to_oklab(const rgb& color);
+
+/// Colours outside of sRGB are cut channel by channel.
+[[nodiscard]] rgb to_rgb(const oklab& color);
+
+/// The colour at t in [0, 1] from dark blue to light yellow, in equal steps to the eye; readable
+/// with red-green blindness and in print. t is clamped, NaN is 0.
+[[nodiscard]] rgb sequential_color(double t);
+
+/// The colour at t in [-1, 1]: blue, light grey at 0, red; equal steps to the eye on both sides.
+/// t is clamped, NaN is 0.
+[[nodiscard]] rgb diverging_color(double t);
+
+namespace detail {
+
+inline double to_linear(std::uint8_t channel) {
+  const double c = channel / 255.0;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+inline std::uint8_t from_linear(double c) {
+  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
+}
+
+inline oklab mix(const oklab& from, const oklab& to, double t) {
+  const auto between = [t](double x, double y) { return x + (y - x) * t; };
+  return {between(from.lightness, to.lightness), between(from.a, to.a), between(from.b, to.b)};
+}
+
+inline constexpr std::size_t color_steps = 256;
+
+/// Colours of t = 0, 1/255, ... 1 on the straight line between two colours.
+inline std::array<rgb, color_steps> color_table(const rgb& from, const rgb& to) {
+  std::array<rgb, color_steps> table;
+  const oklab first = to_oklab(from), last = to_oklab(to);
+  for (std::size_t i = 0; i < color_steps; ++i)
+    table[i] = to_rgb(mix(first, last, static_cast<double>(i) / (color_steps - 1)));
+  return table;
+}
+
+inline const rgb& at(const std::array<rgb, color_steps>& table, double t) {
+  const double place = t > 0 ? std::min(t, 1.0) * (color_steps - 1) : 0;
+  return table[static_cast<std::size_t>(place + 0.5)];
+}
+
+}  // namespace detail
+
+inline oklab to_oklab(const rgb& color) {
+  const double r = detail::to_linear(color[0]);
+  const double g = detail::to_linear(color[1]);
+  const double b = detail::to_linear(color[2]);
+  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+inline rgb to_rgb(const oklab& c) {
+  const auto cube = [](double x) { return x * x * x; };
+  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
+  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
+  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
+  return {detail::from_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          detail::from_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          detail::from_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+inline rgb sequential_color(double t) {
+  static const auto table = detail::color_table({0, 32, 96}, {255, 233, 69});
+  return detail::at(table, t);
+}
+
+inline rgb diverging_color(double t) {
+  static const auto below = detail::color_table({238, 238, 238}, {20, 70, 170});
+  static const auto above = detail::color_table({238, 238, 238}, {170, 30, 40});
+  return t < 0 ? detail::at(below, -t) : detail::at(above, t);
+}
+
+}  // namespace aib::raster
+
 // aib/raster/downsample.hpp
 
 namespace aib::raster {
@@ -1426,6 +1854,92 @@ template <class T>
     for (std::size_t x = 0; x < width; ++x) target(x, y) = from[column[x]];
   }
   return target;
+}
+
+}  // namespace aib::raster
+
+// aib/raster/draw.hpp
+
+namespace aib::raster {
+
+/// Copies an image into another at (x, y); what lies outside is cut off.
+inline void paste(color_image& onto, view<const rgb> image, std::size_t x, std::size_t y) {
+  if (x >= onto.width()) return;
+  const std::size_t width = std::min(image.width, onto.width() - x);
+  for (std::size_t row = 0; row < image.height && y + row < onto.height(); ++row)
+    std::copy_n(image.row(row).begin(), width, &onto(x, y + row));
+}
+
+/// Size of a character of draw_number with the gap behind it, at scale 1.
+inline constexpr std::size_t character_width = 4;
+inline constexpr std::size_t character_height = 5;
+
+/// Writes a number into an image at (x, y), `scale` pixels a dot. Knows the characters
+/// "0123456789.-+%"; others are blank. What lies outside is cut off.
+void draw_number(color_image& onto,
+                 std::string_view text,
+                 std::size_t x,
+                 std::size_t y,
+                 const rgb& color,
+                 std::size_t scale = 2);
+
+/// Pictures in rows of `columns`, each shrunk (nearest neighbour) to `width` pixels in the shape of
+/// the first, on white. No picture gives an empty image.
+color_image contact_sheet(std::span<const color_image> pictures,
+                          std::size_t columns,
+                          std::size_t width);
+
+namespace detail {
+
+/// Rows of three dots, the highest row in the highest bits.
+inline std::uint16_t dots_of(char c) {
+  constexpr std::string_view known = "0123456789.-+%";
+  constexpr std::array<std::uint16_t, 14> dots = {
+      0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
+      0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'001'010'010,
+      0b111'101'111'101'111, 0b111'101'111'001'111, 0b000'000'000'000'010, 0b000'000'111'000'000,
+      0b000'010'111'010'000, 0b101'001'010'100'101};
+  const std::size_t at = known.find(c);
+  return at == std::string_view::npos ? std::uint16_t{0} : dots[at];
+}
+
+}  // namespace detail
+
+inline void draw_number(color_image& onto,
+                        std::string_view text,
+                        std::size_t x,
+                        std::size_t y,
+                        const rgb& color,
+                        std::size_t scale) {
+  for (const char c : text) {
+    const unsigned dots = detail::dots_of(c);
+    for (std::size_t py = 0; py < 5 * scale; ++py) {
+      for (std::size_t px = 0; px < 3 * scale; ++px) {
+        const std::size_t bit = 14 - (3 * (py / scale) + px / scale);
+        if ((dots >> bit & 1u) && x + px < onto.width() && y + py < onto.height())
+          onto(x + px, y + py) = color;
+      }
+    }
+    x += character_width * scale;
+  }
+}
+
+inline color_image contact_sheet(std::span<const color_image> pictures,
+                                 std::size_t columns,
+                                 std::size_t width) {
+  if (pictures.empty() || columns == 0 || width == 0) return {};
+  constexpr std::size_t gap = 6;
+  const color_image& first = pictures.front();
+  const std::size_t height = std::max<std::size_t>(1, width * first.height() / first.width());
+  columns = std::min(columns, pictures.size());
+  const std::size_t rows = (pictures.size() + columns - 1) / columns;
+  color_image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {255, 255, 255});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const color_image small = resample_nearest(pictures[i].view(), width, height);
+    paste(sheet, small.view(), gap + i % columns * (width + gap),
+          gap + i / columns * (height + gap));
+  }
+  return sheet;
 }
 
 }  // namespace aib::raster
@@ -1934,10 +2448,10 @@ inline f32x8 squared_distances(const query& q, const point_block& block, std::si
 /// A node or block that waits to be visited, and how far it is.
 struct pending_box {
   float squared;
-  std::uint32_t level;  ///< of the box's children; `pending_box::block` for a block
+  std::uint32_t level;  ///< of the box's children; `leaf` for a block or triangle
   std::uint32_t index;
 
-  static constexpr std::uint32_t block = ~0u;
+  static constexpr std::uint32_t leaf = ~0u;
 };
 
 /// Boxes that wait, the nearest child of the last visited node on top. Eight children a level and
@@ -1946,8 +2460,8 @@ class pending_boxes {
  public:
   [[nodiscard]] bool empty() const { return size_ == 0; }
   pending_box pop() { return boxes_[--size_]; }
-  void push_root(const box_tree& tree) {
-    boxes_[size_++] = {0, static_cast<std::uint32_t>(tree.levels() - 1), 0};
+  void push_root(std::size_t levels) {
+    boxes_[size_++] = {0, static_cast<std::uint32_t>(levels - 1), 0};
   }
 
   /// The children of a node whose bits are set in `mask`, farthest first.
@@ -1955,7 +2469,7 @@ class pending_boxes {
     float distance[8];
     squared.store(distance);
     const std::size_t bottom = size_;
-    const std::uint32_t level = node.level == 0 ? pending_box::block : node.level - 1;
+    const std::uint32_t level = node.level == 0 ? pending_box::leaf : node.level - 1;
     for (; mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
       std::size_t place = size_++;
@@ -1988,11 +2502,11 @@ inline float nearest_one(const box_tree& tree,
   };
   visit(near_block);
   pending_boxes pending;
-  pending.push_root(tree);
+  pending.push_root(tree.levels());
   while (!pending.empty()) {
     const pending_box box = pending.pop();
     if (!(box.squared < bound)) continue;
-    if (box.level == pending_box::block) {
+    if (box.level == pending_box::leaf) {
       visit(box.index);
     } else {
       const f32x8 d = squared_distances(q.axis, q.axis, tree.level(box.level)[box.index]);
@@ -2361,6 +2875,217 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
 }  // namespace AIB_ISA
 }  // namespace aib::search
 
+// aib/search/triangle_tree.hpp
+
+namespace aib::search {
+
+/// Corners of a triangle.
+struct corners {
+  float at[3][3];  ///< [corner][axis]
+
+  corners() = default;
+  corners(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c)
+      : at{{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}} {}
+
+  template <class Scalar>
+  [[nodiscard]] Eigen::Matrix<Scalar, 3, 1> corner(int k) const {
+    return Eigen::Vector3f(at[k]).cast<Scalar>();
+  }
+};
+
+/// The part of a triangle that a point of it belongs to: its face, edge k (from corner k to the
+/// next), or corner k.
+enum class triangle_part { face, edge, corner };
+
+/// The point of a triangle that is nearest to a query.
+struct surface_point {
+  Eigen::Vector3d position;
+  triangle_part part = triangle_part::face;
+  int k = 0;  ///< which edge or corner
+};
+
+/// The point of a triangle that is nearest to p. A triangle without area is treated as its edges.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+[[nodiscard]] inline surface_point nearest_on_triangle(const Eigen::Vector3d& p,
+                                                       const std::array<Eigen::Vector3d, 3>& t) {
+  const Eigen::Vector3d ab = t[1] - t[0], ac = t[2] - t[0];
+  const Eigen::Vector3d ap = p - t[0], bp = p - t[1], cp = p - t[2];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {t[0], triangle_part::corner, 0};
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {t[1], triangle_part::corner, 1};
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {t[2], triangle_part::corner, 2};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    return {t[0] + d1 / (d1 - d3) * ab, triangle_part::edge, 0};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return {t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]), triangle_part::edge, 1};
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    return {t[0] + d2 / (d2 - d6) * ac, triangle_part::edge, 2};
+  }
+  const double sum = va + vb + vc;
+  return {t[0] + vb / sum * ab + vc / sum * ac, triangle_part::face, 0};
+}
+
+inline namespace AIB_ISA {
+
+/// The range of a triangle on one axis.
+inline std::pair<float, float> range_of(const corners& t, int axis) {
+  return {std::min({t.at[0][axis], t.at[1][axis], t.at[2][axis]}),
+          std::max({t.at[0][axis], t.at[1][axis], t.at[2][axis]})};
+}
+
+/// The triangle that is nearest to a query, and how near.
+struct nearest_triangle {
+  std::uint32_t place = 0;  ///< in the order of the tree
+  double squared = std::numeric_limits<double>::infinity();
+};
+
+/// Triangles in the order of a curve under a tree of boxes, eight to a node. Triangles must be
+/// finite and not empty.
+class triangle_tree {
+ public:
+  triangle_tree(std::span<const corners> triangles,
+                const curve& order,
+                unsigned threads = 0,
+                const control& control = {});
+
+  [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+
+  /// Index, as given, of the triangle at a place.
+  [[nodiscard]] std::uint32_t index(std::uint32_t place) const { return index_[place]; }
+
+  /// Corners of the triangle at a place.
+  [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t place) const {
+    const corners& t = triangles_[place];
+    return {t.corner<double>(0), t.corner<double>(1), t.corner<double>(2)};
+  }
+
+  /// The nearest triangle, exact in double. `first_guess` is a place that is probably near; it
+  /// changes the time, and among equally near triangles the answer, but not the distance.
+  [[nodiscard]] nearest_triangle nearest(const Eigen::Vector3f& p, std::uint32_t first_guess) const;
+
+ private:
+  void try_triangle(const Eigen::Vector3d& p, std::uint32_t place, nearest_triangle& best) const;
+
+  buffer<corners> triangles_;
+  buffer<std::uint32_t> index_;
+  std::vector<buffer<box_node>> levels_;
+};
+
+inline triangle_tree::triangle_tree(std::span<const corners> triangles,
+                                    const curve& order,
+                                    unsigned threads,
+                                    const control& control)
+    : triangles_(triangles.size()), index_(triangles.size()) {
+  if (threads == 0) threads = available_threads();
+  std::vector<Eigen::Vector3f> centres;
+  centres.reserve(triangles.size());
+  for (const corners& t : triangles)
+    centres.push_back(t.corner<float>(0) / 3 + t.corner<float>(1) / 3 + t.corner<float>(2) / 3);
+  const auto sorted = sort_along(centres, order, threads, control);
+  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    index_[i] = static_cast<std::uint32_t>(sorted[i] & mask);
+    triangles_[i] = triangles[index_[i]];
+  }
+  const std::span<const corners> leaves = triangles_.span();
+  levels_.push_back(boxes_above(leaves, threads, control));
+  while (levels_.back().size() > 1) {
+    const std::span<const box_node> below = levels_.back().span();
+    levels_.push_back(boxes_above(below, threads, control));
+  }
+}
+
+inline void triangle_tree::try_triangle(const Eigen::Vector3d& p,
+                                        std::uint32_t place,
+                                        nearest_triangle& best) const {
+  const Eigen::Vector3d offset = nearest_on_triangle(p, triangle(place)).position - p;
+  const double squared = offset.squaredNorm();
+  if (squared < best.squared) best = {place, squared};
+}
+
+/// Boxes are measured in float, each operation rounded once; a bound that is larger by more than
+/// their sum of rounding errors never cuts off a nearer triangle.
+inline float bound_above(double squared) {
+  return static_cast<float>(std::min(squared * (1 + 1e-5), 3e38)) +
+         std::numeric_limits<float>::min();
+}
+
+inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
+                                               std::uint32_t first_guess) const {
+  const query q(p.x(), p.y(), p.z());
+  const Eigen::Vector3d exact = p.cast<double>();
+  nearest_triangle best;
+  try_triangle(exact, first_guess, best);
+  pending_boxes pending;
+  pending.push_root(levels_.size());
+  while (!pending.empty()) {
+    const pending_box box = pending.pop();
+    const float bound = bound_above(best.squared);
+    if (!(box.squared < bound)) continue;
+    if (box.level == pending_box::leaf) {
+      try_triangle(exact, box.index, best);
+    } else {
+      const f32x8 d = squared_distances(q.axis, q.axis, levels_[box.level][box.index]);
+      pending.push_children(box, d, less(d, f32x8::broadcast(bound)));
+    }
+  }
+  return best;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/depth/crop.hpp
+
+namespace aib::depth {
+
+/// The part of a frame that is evaluated, as driving benchmarks cut it.
+enum class crop_rule {
+  none,
+  garg,   ///< Garg et al., "Unsupervised CNN for single view depth estimation", ECCV 2016
+  eigen,  ///< Eigen, Puhrsch, Fergus, NeurIPS 2014
+};
+
+namespace detail {
+
+/// Shares of height and width; ends are truncated to whole pixels and exclusive.
+struct crop_shares {
+  double top, bottom, left, right;
+};
+
+constexpr crop_shares shares_of(crop_rule c) {
+  switch (c) {
+    case crop_rule::garg:
+      return {0.40810811, 0.99189189, 0.03594771, 0.96405229};
+    case crop_rule::eigen:
+      return {0.3324324, 0.91351351, 0.0359477, 0.96405229};
+    default:
+      return {0, 1, 0, 1};
+  }
+}
+
+}  // namespace detail
+
+/// The cropped part of a view; an empty view stays empty.
+template <class T>
+[[nodiscard]] raster::view<T> cropped(raster::view<T> whole, crop_rule c) {
+  const detail::crop_shares s = detail::shares_of(c);
+  const auto at = [](double share, std::size_t size) {
+    return static_cast<std::size_t>(share * static_cast<double>(size));
+  };
+  const std::size_t x = at(s.left, whole.width), y = at(s.top, whole.height);
+  return raster::part(whole, x, y, at(s.right, whole.width) - x, at(s.bottom, whole.height) - y);
+}
+
+}  // namespace aib::depth
+
 // aib/depth/depth_map.hpp
 
 namespace aib::depth {
@@ -2461,18 +3186,20 @@ namespace detail {
 
 inline namespace AIB_ISA {
 
-/// term(0) + ... + term(size - 1), added in a tree of halves.
-template <std::size_t size, class Term>
-double tree_sum(const Term& term) {
-  if constexpr (size == 1) {
-    return term(0);
-  } else if constexpr (size > 32) {
-    return tree_sum<size / 2>([&](std::size_t i) { return term(i) + term(i + size / 2); });
-  } else {
-    double half[size / 2];
-    for (std::size_t i = 0; i < size / 2; ++i) half[i] = term(i) + term(i + size / 2);
-    return tree_sum<size / 2>([&](std::size_t i) { return half[i]; });
-  }
+inline f64x4 load4(const double* p) { return f64x4::load(p); }
+inline f64x4 load4(const float* p) { return f64x4::convert(p); }
+inline f64x4 load4(const std::uint8_t* p) {
+  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
+  return f64x4::load(inside);
+}
+
+/// Four from `p`, of which `n` are there: the others are 0.
+template <class T>
+f64x4 load4(const T* p, std::size_t n) {
+  if (n >= 4) return load4(p);
+  T some[4] = {};
+  std::copy_n(p, n, some);
+  return load4(some);
 }
 
 }  // namespace AIB_ISA
@@ -2481,158 +3208,144 @@ double tree_sum(const Term& term) {
 
 inline namespace AIB_ISA {
 
-/// Collects pixels and adds them up block by block. The loops run over whole blocks of doubles,
-/// have no branch and sum in a fixed tree: compilers make vector code of them, and every
-/// instruction set gives the same bits.
-class error_block {
+/// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
+/// bits.
+class error_adder {
  public:
-  static constexpr std::size_t size = 256;
+  explicit error_adder(const pixel_rules& rules) : rules_(rules) {}
 
-  explicit error_block(const pixel_rules& rules) : rules_(rules) {}
-
-  /// Adds n pixels; `mask` is null or n bytes, of which 0 leaves a pixel out.
+  /// Adds a row; `mask` is null or as long, of which 0 leaves a pixel out.
   template <class Estimate, class Reference>
-  void add(const Estimate* estimate,
-           const Reference* reference,
-           const std::uint8_t* mask,
-           std::size_t n);
+  void add(std::span<const Estimate> estimate,
+           std::span<const Reference> reference,
+           const std::uint8_t* mask);
 
-  /// The sums of all pixels so far.
-  error_sums result();
+  /// The sums of all rows so far.
+  [[nodiscard]] error_sums result() const;
 
  private:
-  struct column {
-    alignas(64) double values[size];
-    double& operator[](std::size_t i) { return values[i]; }
-    const double& operator[](std::size_t i) const { return values[i]; }
+  /// Pixels whose log ratios are kept until their mean is known.
+  struct block {
+    static constexpr std::size_t size = 512;
+    f64x4 log_ratio[size / 4];
+    f64x4 weight[size / 4];
+  };
+  /// A pixel that does not count is estimate = reference = 1: all its errors are 0.
+  struct pixels {
+    f64x4 estimate;
+    f64x4 reference;
+    f64x4 weight;  ///< 1 where the pixel counts, else 0
   };
 
-  template <class Scalar>
-  void take(column& to, const Scalar* from, const std::uint8_t* mask, std::size_t n) const;
-  void flush();
-  void select();
-  [[nodiscard]] error_sums errors();
+  pixels select(f64x4 estimate, f64x4 reference, f64x4 inside);
+  f64x4 add(const pixels& p);
+  void add_log_ratios(const block& b, std::size_t n);
+
+  static f64x4 number(double x) { return f64x4::broadcast(x); }
+  static f64x4 is_less(f64x4 a, f64x4 b) { return choose(a, b, number(1), number(0)); }
+  static f64x4 absolute(f64x4 a) { return max(a, number(0) - a); }
 
   pixel_rules rules_;
-  error_sums total_;
-  std::size_t filled_ = 0;
-  column estimate_;
-  column reference_;
-  column weight_;  ///< 1 where the pixel counts, else 0
-  column log_ratio_;
-  column per_estimate_;
-  column per_reference_;
+  stats::moments log_ratio_;
+  f64x4 n_reference_ = number(0);
+  f64x4 n_estimate_ = number(0);
+  f64x4 abs_log_ = number(0);
+  f64x4 abs_difference_ = number(0);
+  f64x4 squared_difference_ = number(0);
+  f64x4 abs_relative_ = number(0);
+  f64x4 squared_relative_ = number(0);
+  f64x4 squared_inverse_ = number(0);
+  f64x4 below_delta_[3] = {number(0), number(0), number(0)};
 };
 
 template <class Estimate, class Reference>
-void error_block::add(const Estimate* estimate,
-                      const Reference* reference,
-                      const std::uint8_t* mask,
-                      std::size_t n) {
-  while (n > 0) {
-    const std::size_t k = std::min(n, size - filled_);
-    take(estimate_, estimate, mask, k);
-    take(reference_, reference, mask, k);
-    filled_ += k;
-    if (filled_ == size) flush();
-    estimate += k;
-    reference += k;
-    if (mask) mask += k;
-    n -= k;
+void error_adder::add(std::span<const Estimate> estimate,
+                      std::span<const Reference> reference,
+                      const std::uint8_t* mask) {
+  block b;
+  for (std::size_t first = 0; first < estimate.size(); first += block::size) {
+    const std::size_t n = std::min(block::size, estimate.size() - first);
+    for (std::size_t i = 0; i < n; i += 4) {
+      const std::size_t at = first + i;
+      const f64x4 inside = mask ? detail::load4(mask + at, n - i) : number(1);
+      const pixels p = select(detail::load4(estimate.data() + at, n - i),
+                              detail::load4(reference.data() + at, n - i), inside);
+      b.log_ratio[i / 4] = add(p);
+      b.weight[i / 4] = p.weight;
+    }
+    add_log_ratios(b, n);
   }
 }
 
-template <class Scalar>
-void error_block::take(column& to,
-                       const Scalar* from,
-                       const std::uint8_t* mask,
-                       std::size_t n) const {
-  double* const at = to.values + filled_;
-  for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<double>(from[i]);
-  if (!mask) return;
-  for (std::size_t i = 0; i < n; ++i) at[i] = mask[i] ? at[i] : 0.0;
+/// Applies the rules.
+inline error_adder::pixels error_adder::select(f64x4 raw, f64x4 reference, f64x4 inside) {
+  const f64x4 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
+  f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
+  e = min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
+  // min and max give their second argument, the raw depth, where it is NaN.
+  const f64x4 has_estimate = inside * is_less(zero, min(e, raw)) * is_less(max(e, raw), inf);
+  const f64x4 has_reference =
+      inside * is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
+  n_estimate_ = n_estimate_ + has_estimate;
+  n_reference_ = n_reference_ + has_reference;
+  const f64x4 weight = has_estimate * has_reference;
+  return {.estimate = choose(zero, weight, e, number(1)),
+          .reference = choose(zero, weight, reference, number(1)),
+          .weight = weight};
 }
 
-inline error_sums error_block::result() {
-  if (filled_ > 0) flush();
-  return total_;
-}
-
-inline void error_block::flush() {
-  for (std::size_t i = filled_; i < size; ++i) estimate_[i] = reference_[i] = 0;
-  filled_ = 0;
-  select();
-  total_ += errors();
-}
-
-/// Applies the rules. A pixel that does not count becomes estimate = reference = 1: all its errors
-/// are 0.
-inline void error_block::select() {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  const pixel_rules rules = rules_;
-  column has_estimate, has_reference;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double raw = estimate_[i];
-    const double r = reference_[i];
-    double e = rules.transform.scale * raw + rules.transform.shift;
-    e = e < rules.clamp_min ? rules.clamp_min : e;
-    e = e > rules.clamp_max ? rules.clamp_max : e;
-    const double raw_valid = (raw > 0 ? 1.0 : 0.0) * (raw < inf ? 1.0 : 0.0);
-    const double in_front = (e > 0 ? 1.0 : 0.0) * (e < inf ? 1.0 : 0.0);
-    has_estimate[i] = raw_valid * in_front;
-    has_reference[i] = (r > rules.min ? 1.0 : 0.0) * (r < rules.max ? 1.0 : 0.0);
-    weight_[i] = has_estimate[i] * has_reference[i];
-    estimate_[i] = weight_[i] > 0 ? e : 1.0;
-    reference_[i] = weight_[i] > 0 ? r : 1.0;
-  }
-  const auto count = [](const column& c) {
-    return static_cast<std::uint64_t>(detail::tree_sum<size>([&](std::size_t i) { return c[i]; }));
-  };
-  total_.n_estimate += count(has_estimate);
-  total_.n_reference += count(has_reference);
-}
-
-inline error_sums error_block::errors() {
-  const double clamp_log = rules_.clamp_log;
-  column larger, smaller;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double in_log = estimate_[i] < clamp_log ? clamp_log : estimate_[i];
-    log_ratio_[i] = math::log_ratio(reference_[i], in_log) * weight_[i];
-    per_estimate_[i] = 1 / estimate_[i];
-    per_reference_[i] = 1 / reference_[i];
-    larger[i] = estimate_[i] > reference_[i] ? estimate_[i] : reference_[i];
-    smaller[i] = estimate_[i] > reference_[i] ? reference_[i] : estimate_[i];
-  }
-  const auto sum = [](const auto& term) { return detail::tree_sum<size>(term); };
-  const column& e = estimate_;
-  const column& r = reference_;
-  const double n = sum([&](std::size_t i) { return weight_[i]; });
-  const double mean = n > 0 ? sum([&](std::size_t i) { return log_ratio_[i]; }) / n : 0;
-  const double squares = sum([&](std::size_t i) {
-    const double deviation = (log_ratio_[i] - mean) * weight_[i];
-    return deviation * deviation;
-  });
+/// Adds all but the moments of the log ratios, and returns those.
+inline f64x4 error_adder::add(const pixels& p) {
+  const f64x4 e = p.estimate, r = p.reference;
+  const f64x4 log_ratio = p.weight * math::log_ratio(r, max(e, number(rules_.clamp_log)));
+  const f64x4 per_reference = number(1) / r;
+  const f64x4 difference = absolute(e - r);
+  const f64x4 relative = difference * per_reference;
+  const f64x4 inverse = number(1) / e - per_reference;
+  abs_log_ = abs_log_ + absolute(log_ratio);
+  abs_difference_ = abs_difference_ + difference;
+  squared_difference_ = squared_difference_ + difference * difference;
+  abs_relative_ = abs_relative_ + relative;
+  squared_relative_ = squared_relative_ + difference * relative;
+  squared_inverse_ = squared_inverse_ + inverse * inverse;
   // Without division: 1.25^k is exact in binary, and so is its product with a float.
+  const f64x4 larger = max(e, r), smaller = min(e, r);
   const auto below = [&](double delta) {
-    column is_below;
-    for (std::size_t i = 0; i < size; ++i) is_below[i] = larger[i] < delta * smaller[i] ? 1.0 : 0.0;
-    const double count = sum([&](std::size_t i) { return is_below[i] * weight_[i]; });
-    return static_cast<std::uint64_t>(count);
+    return p.weight * is_less(larger, number(delta) * smaller);
   };
-  return {
-      .log_ratio = stats::moments::from(static_cast<std::uint64_t>(n), mean, squares),
-      .abs_log = sum([&](std::size_t i) { return std::abs(log_ratio_[i]); }),
-      .abs_difference = sum([&](std::size_t i) { return std::abs(e[i] - r[i]); }),
-      .squared_difference = sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]); }),
-      .abs_relative = sum([&](std::size_t i) { return std::abs(e[i] - r[i]) * per_reference_[i]; }),
-      .squared_relative =
-          sum([&](std::size_t i) { return (e[i] - r[i]) * (e[i] - r[i]) * per_reference_[i]; }),
-      .squared_inverse = sum([&](std::size_t i) {
-        const double difference = per_estimate_[i] - per_reference_[i];
-        return difference * difference;
-      }),
-      .below_delta = {below(1.25), below(1.5625), below(1.953125)},
-  };
+  below_delta_[0] = below_delta_[0] + below(1.25);
+  below_delta_[1] = below_delta_[1] + below(1.5625);
+  below_delta_[2] = below_delta_[2] + below(1.953125);
+  return log_ratio;
+}
+
+inline void error_adder::add_log_ratios(const block& b, std::size_t n) {
+  f64x4 counts = number(0), total = number(0), squares = number(0);
+  for (std::size_t i = 0; 4 * i < n; ++i) {
+    counts = counts + b.weight[i];
+    total = total + b.log_ratio[i];
+  }
+  const double count = sum(counts);
+  const double mean = count > 0 ? sum(total) / count : 0;
+  for (std::size_t i = 0; 4 * i < n; ++i) {
+    const f64x4 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
+    squares = squares + deviation * deviation;
+  }
+  log_ratio_ += stats::moments::from(static_cast<std::uint64_t>(count), mean, sum(squares));
+}
+
+inline error_sums error_adder::result() const {
+  const auto count = [](f64x4 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
+  return {.log_ratio = log_ratio_,
+          .n_reference = count(n_reference_),
+          .n_estimate = count(n_estimate_),
+          .abs_log = sum(abs_log_),
+          .abs_difference = sum(abs_difference_),
+          .squared_difference = sum(squared_difference_),
+          .abs_relative = sum(abs_relative_),
+          .squared_relative = sum(squared_relative_),
+          .squared_inverse = sum(squared_inverse_),
+          .below_delta = {count(below_delta_[0]), count(below_delta_[1]), count(below_delta_[2])}};
 }
 
 /// The sums over all pixels of a frame after one transform; nothing is fitted. Bit-identical for
@@ -2647,12 +3360,10 @@ error_sums sum_errors(raster::view<const Estimate> estimate,
   constexpr std::size_t pixels_a_chunk = 1 << 16;
   const std::size_t rows = estimate.width ? 1 + pixels_a_chunk / estimate.width : 1;
   const auto sums_of = [&](const chunk& c) {
-    error_block block(rules);
-    for (std::size_t y = c.begin; y < c.end; ++y) {
-      block.add(estimate.row(y).data(), reference.row(y).data(),
-                mask.data ? mask.row(y).data() : nullptr, estimate.width);
-    }
-    return block.result();
+    error_adder adder(rules);
+    for (std::size_t y = c.begin; y < c.end; ++y)
+      adder.add(estimate.row(y), reference.row(y), mask.data ? mask.row(y).data() : nullptr);
+    return adder.result();
   };
   const auto combine = [](error_sums total, const error_sums& part) { return total += part; };
   return reduce_chunks(estimate.height, rows, threads, {}, error_sums{}, sums_of, combine);
@@ -2684,7 +3395,8 @@ enum class alignment {
 class fitter {
  public:
   /// Only the validity of `rules` is used: min and max of the reference.
-  explicit fitter(alignment kind, const pixel_rules& rules = {}) : kind_(kind), rules_(rules) {}
+  explicit fitter(alignment kind = alignment::none, const pixel_rules& rules = {})
+      : kind_(kind), rules_(rules) {}
 
   /// Throws argument_error if the sizes differ.
   template <class Estimate, class Reference>
@@ -2692,6 +3404,8 @@ class fitter {
            raster::view<const Reference> reference,
            raster::view<const std::uint8_t> mask = {});
 
+  /// A fitter of nothing (alignment::none) becomes the other. Throws argument_error if kinds
+  /// differ.
   fitter& operator+=(const fitter& other);
 
   /// Pixels valid in both maps, 0 for alignment::none.
@@ -2799,6 +3513,7 @@ inline fitter::pair_moments& fitter::pair_moments::operator+=(const pair_moments
 }
 
 inline fitter& fitter::operator+=(const fitter& other) {
+  if (kind_ == alignment::none) return *this = other;
   if (other.kind_ != kind_) throw argument_error("depth::fitter: merged fits differ in kind");
   log_ratio_ += other.log_ratio_;
   pairs_ += other.pairs_;
@@ -2884,6 +3599,7 @@ struct error_options {
   double min = 0;                                        ///< a reference counts above it, exclusive
   double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
   raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  crop_rule crop = crop_rule::none;                      ///< the rest is left out
   affine transform = {};  ///< of a batch or sequence (see fitter), where nothing is aligned here
   double clamp_min = 0;   ///< smaller estimates become this
   double clamp_max = std::numeric_limits<double>::infinity();  ///< larger ones this
@@ -3001,30 +3717,40 @@ inline error_summary summarize(const error_sums& sums, const affine& transform) 
   };
 }
 
-/// What takes the estimates of a frame to its references: the fit that the options ask for, or
-/// their transform. Throws argument_error if they have both. A frame without a valid pixel has the
-/// identity.
+/// The sums of a frame, and what took its estimates to its references: the fit that the options ask
+/// for, or their transform.
+struct frame_sums {
+  error_sums sums;
+  affine transform = {};
+};
+
+/// A frame without a valid pixel has the identity for a fit. Throws argument_error if the sizes
+/// differ, or if the options have both a fit and a transform.
 template <class Estimate, class Reference>
-affine frame_transform(raster::view<const Estimate> estimate,
-                       raster::view<const Reference> reference,
-                       const error_options& options) {
-  if (options.align == alignment::none) return options.transform;
-  if (options.transform != affine{}) {
-    throw argument_error("depth::errors: either `align` or `transform` expected, found both");
+frame_sums measure(raster::view<const Estimate> estimate,
+                   raster::view<const Reference> reference,
+                   const error_options& options) {
+  check_sizes("depth::errors", estimate, reference, options.mask);
+  estimate = cropped(estimate, options.crop);
+  reference = cropped(reference, options.crop);
+  const raster::view<const std::uint8_t> mask = cropped(options.mask, options.crop);
+  pixel_rules rules = rules_of(options);
+  if (options.align != alignment::none) {
+    if (options.transform != affine{})
+      throw argument_error("depth::errors: either `align` or `transform` expected, found both");
+    fitter fit(options.align, rules);
+    fit.add(estimate, reference, mask);
+    if (fit.n_valid() > 0) rules.transform = fit.result();
   }
-  fitter fit(options.align, rules_of(options));
-  fit.add(estimate, reference, options.mask);
-  return fit.n_valid() ? fit.result() : affine{};
+  return {sum_errors(estimate, reference, rules, mask, options.threads), rules.transform};
 }
 
 template <class Estimate, class Reference>
 error_summary errors(raster::view<const Estimate> estimate,
                      raster::view<const Reference> reference,
                      const error_options& options) {
-  pixel_rules rules = rules_of(options);
-  rules.transform = frame_transform(estimate, reference, options);
-  return summarize(sum_errors(estimate, reference, rules, options.mask, options.threads),
-                   rules.transform);
+  const frame_sums frame = measure(estimate, reference, options);
+  return summarize(frame.sums, frame.transform);
 }
 
 template <class Estimate, class Reference>
@@ -3103,27 +3829,51 @@ struct frame {
   raster::image<std::uint8_t> mask = {};
 };
 
+/// What one fit of scale and shift is over.
+enum class scope { frame, sequence };
+
 struct accumulate_options {
   error_options errors = {};
-  unsigned threads = 0;  ///< 0: all; so many frames are in memory at a time
+  scope align_over = scope::frame;  ///< sequence: one fit over all frames, which are loaded twice
+  unsigned threads = 0;             ///< 0: all; so many frames are in memory at a time
   aib::control control = {};
 };
+
+/// One fit of scale and shift over the frames that `load` gives, see accumulate.
+template <class Load>
+[[nodiscard]] affine fit_frames(std::size_t n, const accumulate_options& options, Load load) {
+  const auto fit_of = [&](const chunk& c) {
+    const frame f = load(c.begin);
+    fitter one(options.errors.align, rules_of(options.errors));
+    one.add(cropped(f.estimate.values.view(), options.errors.crop),
+            cropped(f.reference.values.view(), options.errors.crop),
+            cropped(f.mask.view(), options.errors.crop));
+    return one;
+  };
+  const auto combine = [](fitter total, const fitter& part) { return total += part; };
+  return reduce_chunks(n, 1, options.threads, options.control, fitter(), fit_of, combine).result();
+}
 
 /// Loads frames 0 .. n - 1 by `load(i) -> frame`, from several threads at a time, and accumulates
 /// them in order: the result does not depend on the number of threads. What `load` throws is thrown
 /// here.
 template <class Load>
 [[nodiscard]] accumulator accumulate(std::size_t n, const accumulate_options& options, Load load) {
+  error_options errors = options.errors;
+  if (options.align_over == scope::sequence && errors.align != alignment::none) {
+    errors.transform = fit_frames(n, options, load);
+    errors.align = alignment::none;
+  }
   const auto errors_of = [&](const chunk& c) {
-    accumulator one(options.errors);
+    accumulator one(errors);
     frame f = load(c.begin);
     one.add(std::move(f.name), std::as_const(f.estimate.values).view(),
             std::as_const(f.reference.values).view(), std::as_const(f.mask).view());
     return one;
   };
   const auto combine = [](accumulator total, const accumulator& part) { return total += part; };
-  return reduce_chunks(n, 1, options.threads, options.control, accumulator(options.errors),
-                       errors_of, combine);
+  return reduce_chunks(n, 1, options.threads, options.control, accumulator(errors), errors_of,
+                       combine);
 }
 
 template <class Estimate, class Reference>
@@ -3133,11 +3883,8 @@ void accumulator::add(std::string name,
                       raster::view<const std::uint8_t> mask) {
   error_options options = options_;
   options.mask = mask;
-  frame_record record{.name = std::move(name)};
-  record.transform = frame_transform(estimate, reference, options);
-  pixel_rules rules = rules_of(options);
-  rules.transform = record.transform;
-  record.sums = sum_errors(estimate, reference, rules, mask, options.threads);
+  const frame_sums measured = measure(estimate, reference, options);
+  frame_record record{std::move(name), measured.sums, measured.transform};
   if (record.sums.log_ratio.count() > 0) record.errors = summarize(record.sums, record.transform);
   frames_.push_back(std::move(record));
 }
@@ -3195,6 +3942,217 @@ inline std::vector<std::size_t> worst_first(const std::vector<frame_record>& fra
     return (*frames[a].errors).*field > (*frames[b].errors).*field;
   });
   return order;
+}
+
+}  // namespace aib::depth
+
+// aib/depth/error_image.hpp
+
+namespace aib::depth {
+
+struct error_image_options {
+  error_options errors = {};  ///< which pixels count, and what takes the estimate to the reference
+  double near = 0;            ///< depth of the first colour; 0: 1 % of the references are nearer
+  double far = 0;             ///< depth of the last colour; 0: 1 % of the references are farther
+  double largest = 0;  ///< relative error of the last colour; 0: 95 % of the errors are smaller
+};
+
+/// Three panels side by side: the estimate as transformed, the reference, and the signed error
+/// (estimate - reference) / reference. Depths share one scale from blue (near) to yellow (far);
+/// the error is blue where the estimate is too near, red where it is too far. Pixels without a
+/// value are hatched grey. Below are the scales with their numbers.
+///
+/// Throws as `errors` does.
+[[nodiscard]] raster::color_image error_image(const depth_map& estimate,
+                                              const depth_map& reference,
+                                              const error_image_options& options = {});
+
+namespace detail {
+
+/// The largest and smallest number that colours stand for.
+struct color_range {
+  double low;
+  double high;
+};
+
+inline raster::rgb hatch(std::size_t x, std::size_t y) {
+  const std::uint8_t grey = (x + y) / 3 % 2 ? 120 : 95;
+  return {grey, grey, grey};
+}
+
+/// "12.3": four characters or so, plain notation.
+inline std::string short_number(double value) {
+  const double size = std::abs(value);
+  const int digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 4;
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
+  return {text, end.ptr};
+}
+
+/// A bar of colours with its lowest, middle and highest number below.
+template <class Color>
+raster::color_image scale_bar(
+    std::size_t width, const color_range& range, double unit, const char* suffix, Color color) {
+  constexpr std::size_t bar = 12, gap = 4, scale = 2;
+  raster::color_image image(width, bar + 2 * gap + raster::character_height * scale,
+                            {255, 255, 255});
+  for (std::size_t x = 0; x < width; ++x) {
+    const double share = (static_cast<double>(x) + 0.5) / static_cast<double>(width);
+    for (std::size_t y = 0; y < bar; ++y) image(x, y) = color(share);
+  }
+  const std::string labels[] = {short_number(range.low * unit) + suffix,
+                                short_number((range.low + range.high) / 2 * unit) + suffix,
+                                short_number(range.high * unit) + suffix};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t length = labels[i].size() * raster::character_width * scale;
+    const std::size_t room = width > length ? width - length : 0;
+    raster::draw_number(image, labels[i], room * i / 2, bar + gap, {0, 0, 0}, scale);
+  }
+  return image;
+}
+
+/// What the pictures show, pixel by pixel; NaN where there is nothing.
+struct error_panels {
+  raster::image<double> estimate;
+  raster::image<double> reference;
+  raster::image<double> relative;
+};
+
+inline error_panels panels_of(const depth_map& estimate,
+                              const depth_map& reference,
+                              const error_options& options,
+                              const affine& transform) {
+  const std::size_t width = estimate.values.width(), height = estimate.values.height();
+  const raster::image<double> nothing(width, height, std::numeric_limits<double>::quiet_NaN());
+  error_panels panels{nothing, nothing, nothing};
+  const auto mask = options.mask;
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      if (mask.data && mask(x, y) == 0) continue;
+      const double raw = static_cast<double>(estimate.values(x, y));
+      const double r = static_cast<double>(reference.values(x, y));
+      const double e =
+          std::clamp(transform.scale * raw + transform.shift, options.clamp_min, options.clamp_max);
+      const bool has_estimate = is_valid(raw) && is_valid(e);
+      const bool has_reference = r > options.min && r < options.max;
+      if (has_estimate) panels.estimate(x, y) = e;
+      if (has_reference) panels.reference(x, y) = r;
+      if (has_estimate && has_reference) panels.relative(x, y) = (e - r) / r;
+    }
+  }
+  return panels;
+}
+
+inline std::vector<double> numbers_of(const raster::image<double>& image) {
+  std::vector<double> numbers;
+  std::copy_if(image.begin(), image.end(), std::back_inserter(numbers),
+               [](double v) { return std::isfinite(v); });
+  return numbers;
+}
+
+template <class Color>
+raster::color_image painted(const raster::image<double>& numbers,
+                            const color_range& range,
+                            Color color) {
+  raster::color_image image(numbers.width(), numbers.height());
+  for (std::size_t y = 0; y < image.height(); ++y) {
+    for (std::size_t x = 0; x < image.width(); ++x) {
+      const double v = numbers(x, y);
+      image(x, y) =
+          std::isfinite(v) ? color((v - range.low) / (range.high - range.low)) : hatch(x, y);
+    }
+  }
+  return image;
+}
+
+inline color_range depth_range(const error_panels& panels, const error_image_options& options) {
+  std::vector<double> depths = numbers_of(panels.reference);
+  color_range range{options.near, options.far};
+  if (!(range.low > 0)) range.low = stats::quantile_in_place<double>(depths, 0.01);
+  if (!(range.high > 0)) range.high = stats::quantile_in_place<double>(depths, 0.99);
+  if (!(range.high > range.low)) range.high = range.low * 1.01;
+  return range;
+}
+
+inline color_range error_range(const error_panels& panels, const error_image_options& options) {
+  double largest = options.largest;
+  if (!(largest > 0)) {
+    std::vector<double> errors = numbers_of(panels.relative);
+    for (double& e : errors) e = std::abs(e);
+    largest = std::max(stats::quantile_in_place<double>(errors, 0.95), 1e-6);
+  }
+  return {-largest, largest};
+}
+
+}  // namespace detail
+
+inline raster::color_image error_image(const depth_map& estimate,
+                                       const depth_map& reference,
+                                       const error_image_options& options) {
+  const frame_sums frame = measure(estimate.values.view(), reference.values.view(), options.errors);
+  (void)summarize(frame.sums);  // throws where there is nothing to show
+  const auto panels = detail::panels_of(estimate, reference, options.errors, frame.transform);
+  const auto depths = detail::depth_range(panels, options);
+  const auto errors = detail::error_range(panels, options);
+  const auto sequential = [](double share) { return raster::sequential_color(share); };
+  const auto diverging = [](double share) { return raster::diverging_color(2 * share - 1); };
+
+  constexpr std::size_t gap = 6;
+  const std::size_t width = estimate.values.width(), height = estimate.values.height();
+  const auto depth_bar = detail::scale_bar(2 * width + gap, depths, 1, "", sequential);
+  const auto error_bar = detail::scale_bar(width, errors, 100, "%", diverging);
+  raster::color_image image(3 * width + 4 * gap, height + 3 * gap + depth_bar.height(),
+                            {255, 255, 255});
+  const std::size_t second = width + 2 * gap, third = 2 * width + 3 * gap;
+  raster::paste(image, detail::painted(panels.estimate, depths, sequential), gap, gap);
+  raster::paste(image, detail::painted(panels.reference, depths, sequential), second, gap);
+  raster::paste(image, detail::painted(panels.relative, errors, diverging), third, gap);
+  raster::paste(image, depth_bar, gap, height + 2 * gap);
+  raster::paste(image, error_bar, third, height + 2 * gap);
+  return image;
+}
+
+}  // namespace aib::depth
+
+// aib/depth/presets.hpp
+
+namespace aib::depth {
+
+/// Evaluation scripts whose numbers aib repeats.
+enum class preset { paper, kitti, monodepth2, cut3r, pi3 };
+
+/// The options of an evaluation script. What they do not say, and where aib differs on purpose:
+///
+/// paper       the maps as they are: srmse does not see the scale. Mean over frames.
+/// kitti       the maps as they are, in metres. The tool prints irmse in 1/km, errors in percent,
+///             and fills holes of the estimate; here they lower the coverage.
+/// monodepth2  median scaling per image, 1 mm < reference < 80 m, estimates clamped to that range,
+///             Garg's crop. The script resizes disparities bilinearly before: the caller's task.
+/// cut3r, pi3  one lower median over the whole sequence, reference < 80, estimates below 1e-5
+///             raised to it in logarithms alone. The scripts give 0 for a sequence without a valid
+///             pixel (a perfect score), and NaN where one estimate is; here the first is
+///             undefined_error, the second one pixel less. A negative estimate after scale_shift
+///             counts there and is left out here. Their other alignments are `scale_l1`,
+///             `scale_shift` and `none`. The mean over sequences is weighted by pixels: pooled.
+///
+/// Source: evaluate_depth.py of monodepth2; eval/video_depth/tools.py of CUT3R; utils/depth.py of
+/// pi3 (branch evaluation); KITTI depth development kit.
+[[nodiscard]] inline accumulate_options options_of(preset p) {
+  switch (p) {
+    case preset::monodepth2:
+      return {.errors = {.align = alignment::median,
+                         .min = 1e-3,
+                         .max = 80,
+                         .crop = crop_rule::garg,
+                         .clamp_min = 1e-3,
+                         .clamp_max = 80}};
+    case preset::cut3r:
+    case preset::pi3:
+      return {.errors = {.align = alignment::median_lower, .max = 80, .clamp_log = 1e-5},
+              .align_over = scope::sequence};
+    default:
+      return {};
+  }
 }
 
 }  // namespace aib::depth
@@ -3335,6 +4293,56 @@ class key_table {
 
 }  // namespace aib::pose
 
+// aib/pose/pose_relation.hpp
+
+namespace aib::pose {
+
+/// What of the motion between two poses is the error, as evo names it.
+enum class pose_relation {
+  translation,           ///< |t|
+  rotation_part,         ///< |R - I|, Frobenius
+  full,                  ///< |[R t] - [I 0]|, Frobenius
+  angle_deg,             ///< angle of R
+  angle_rad,             ///< angle of R
+  point_distance,        ///< difference of two distances (rpe); the distance itself (ape)
+  point_distance_ratio,  ///< rpe: that difference in percent of the reference's distance
+};
+
+inline constexpr std::array<std::string_view, 7> pose_relation_names = {
+    "translation",    "rotation_part",        "full", "angle_deg", "angle_rad",
+    "point_distance", "point_distance_ratio",
+};
+
+[[nodiscard]] constexpr std::string_view name(pose_relation r) {
+  return pose_relation_names[static_cast<std::size_t>(r)];
+}
+
+/// Errors of frames or of pairs of frames, and their statistics.
+struct pose_errors {
+  stats::summary summary;
+  std::vector<double> errors;      ///< one a frame or pair
+  std::vector<std::size_t> index;  ///< the frame of each, the later one of a pair
+};
+
+/// Size of a motion that should be none.
+[[nodiscard]] inline double magnitude(pose_relation relation, const math::rigid3& error) {
+  const double rotation = (error.rotation - Eigen::Matrix3d::Identity()).norm();
+  switch (relation) {
+    case pose_relation::rotation_part:
+      return rotation;
+    case pose_relation::full:
+      return std::hypot(rotation, error.translation.norm());
+    case pose_relation::angle_deg:
+      return math::degrees(math::rotation_angle(error.rotation));
+    case pose_relation::angle_rad:
+      return math::rotation_angle(error.rotation);
+    default:
+      return error.translation.norm();
+  }
+}
+
+}  // namespace aib::pose
+
 // aib/pose/trajectory.hpp
 
 namespace aib::pose {
@@ -3383,6 +4391,99 @@ inline trajectory select(const trajectory& t, const std::vector<std::size_t>& in
     if (!t.names.empty()) out.names.push_back(t.names.at(i));
     if (!t.stamps_s.empty()) out.stamps_s.push_back(t.stamps_s.at(i));
   }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/registered.hpp
+
+namespace aib::pose {
+
+/// Throws argument_error unless two trajectories have as many poses and, where both have names, the
+/// same names in the same order.
+inline void check_associated(std::string_view who,
+                             const trajectory& estimate,
+                             const trajectory& reference) {
+  check(estimate);
+  check(reference);
+  if (estimate.size() != reference.size()) {
+    throw argument_error(message(who, ": ", estimate.size(), " estimated and ", reference.size(),
+                                 " reference poses; associate them first"));
+  }
+  if (estimate.names.empty() || reference.names.empty()) return;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    if (estimate.names[i] == reference.names[i]) continue;
+    throw argument_error(message(who, ": pose ", i, " is \"", estimate.names[i],
+                                 "\" in the estimate and \"", reference.names[i],
+                                 "\" in the reference; associate them first"));
+  }
+}
+
+/// The frames that have a finite pose in both of two associated trajectories.
+struct registered_frames {
+  std::vector<math::rigid3> estimate;   ///< world_from_camera
+  std::vector<math::rigid3> reference;  ///< world_from_camera
+  std::vector<std::size_t> index;       ///< of each in the trajectories, ascending
+};
+
+/// Throws argument_error as check_associated does.
+[[nodiscard]] inline registered_frames registered(std::string_view who,
+                                                  const trajectory& estimate,
+                                                  const trajectory& reference) {
+  check_associated(who, estimate, reference);
+  registered_frames out;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    const math::rigid3& e = estimate.world_from_camera[i];
+    const math::rigid3& r = reference.world_from_camera[i];
+    if (!e.is_finite() || !r.is_finite()) continue;
+    out.estimate.push_back(e);
+    out.reference.push_back(r);
+    out.index.push_back(i);
+  }
+  return out;
+}
+
+/// The name of a frame of two associated trajectories: one of theirs, else its number.
+[[nodiscard]] inline std::string frame_name(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            std::size_t i) {
+  if (!reference.names.empty()) return reference.names[i];
+  if (!estimate.names.empty()) return estimate.names[i];
+  return message(i);
+}
+
+}  // namespace aib::pose
+
+// aib/pose/ape.hpp
+
+namespace aib::pose {
+
+struct ape_options {
+  pose_relation relation = pose_relation::translation;
+};
+
+/// Absolute pose error: of each frame the motion E = est^-1 ref. Aligns nothing. Frames without a
+/// finite pose are passed over.
+///
+/// Invariant to a common rigid motion. Throws argument_error if the trajectories are not associated
+/// or the relation is a ratio, undefined_error if no frame is registered on both sides.
+/// Source: Sturm et al., IROS 2012, Sec. IV-B; evo, core/metrics.py, APE.
+inline pose_errors ape(const trajectory& estimate,
+                       const trajectory& reference,
+                       const ape_options& options = {}) {
+  if (options.relation == pose_relation::point_distance_ratio)
+    throw argument_error("ape: point_distance_ratio is a relation of pairs; see rpe");
+  const registered_frames frames = registered("ape", estimate, reference);
+  if (frames.index.empty()) {
+    throw undefined_error(
+        message("ape: none of ", estimate.size(), " frames has a finite pose on both sides"));
+  }
+  pose_errors out{.summary = {}, .errors = {}, .index = frames.index};
+  for (std::size_t i = 0; i < frames.index.size(); ++i)
+    out.errors.push_back(
+        magnitude(options.relation, frames.estimate[i].inverse() * frames.reference[i]));
+  out.summary = stats::summarize(out.errors);
   return out;
 }
 
@@ -3787,6 +4888,11 @@ inline constexpr std::array<std::string_view, 7> auc_convention_names = {
 [[nodiscard]] constexpr bool folds(auc_convention c) {
   return c == auc_convention::vggt || c == auc_convention::posediffusion ||
          c == auc_convention::posediffusion_torch || c == auc_convention::da3;
+}
+
+/// Whether a convention's relative pose is E_j E_i^-1: that of the frames in reverse.
+[[nodiscard]] constexpr bool reverses(auc_convention c) {
+  return c == auc_convention::posediffusion || c == auc_convention::posediffusion_torch;
 }
 
 /// Whether a convention is a mean over thresholds, so that counts of pairs suffice.
@@ -4206,65 +5312,6 @@ joint_counts frame_pairs::count_rows(angle_bins rotation,
 
 }  // namespace aib::pose
 
-// aib/pose/registered.hpp
-
-namespace aib::pose {
-
-/// Throws argument_error unless two trajectories have as many poses and, where both have names, the
-/// same names in the same order.
-inline void check_associated(std::string_view who,
-                             const trajectory& estimate,
-                             const trajectory& reference) {
-  check(estimate);
-  check(reference);
-  if (estimate.size() != reference.size()) {
-    throw argument_error(message(who, ": ", estimate.size(), " estimated and ", reference.size(),
-                                 " reference poses; associate them first"));
-  }
-  if (estimate.names.empty() || reference.names.empty()) return;
-  for (std::size_t i = 0; i < estimate.size(); ++i) {
-    if (estimate.names[i] == reference.names[i]) continue;
-    throw argument_error(message(who, ": pose ", i, " is \"", estimate.names[i],
-                                 "\" in the estimate and \"", reference.names[i],
-                                 "\" in the reference; associate them first"));
-  }
-}
-
-/// The frames that have a finite pose in both of two associated trajectories.
-struct registered_frames {
-  std::vector<math::rigid3> estimate;   ///< world_from_camera
-  std::vector<math::rigid3> reference;  ///< world_from_camera
-  std::vector<std::size_t> index;       ///< of each in the trajectories, ascending
-};
-
-/// Throws argument_error as check_associated does.
-[[nodiscard]] inline registered_frames registered(std::string_view who,
-                                                  const trajectory& estimate,
-                                                  const trajectory& reference) {
-  check_associated(who, estimate, reference);
-  registered_frames out;
-  for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const math::rigid3& e = estimate.world_from_camera[i];
-    const math::rigid3& r = reference.world_from_camera[i];
-    if (!e.is_finite() || !r.is_finite()) continue;
-    out.estimate.push_back(e);
-    out.reference.push_back(r);
-    out.index.push_back(i);
-  }
-  return out;
-}
-
-/// The name of a frame of two associated trajectories: one of theirs, else its number.
-[[nodiscard]] inline std::string frame_name(const trajectory& estimate,
-                                            const trajectory& reference,
-                                            std::size_t i) {
-  if (!reference.names.empty()) return reference.names[i];
-  if (!estimate.names.empty()) return estimate.names[i];
-  return message(i);
-}
-
-}  // namespace aib::pose
-
 // aib/pose/auc.hpp
 
 namespace aib::pose {
@@ -4309,8 +5356,7 @@ namespace detail {
 /// The frames in the form that makes frame_pairs' E_i E_j^-1 the relative pose of a convention.
 inline registered_frames frames_for(auc_convention convention, registered_frames frames) {
   for (auto* poses : {&frames.estimate, &frames.reference}) {
-    if (convention == auc_convention::posediffusion ||
-        convention == auc_convention::posediffusion_torch) {
+    if (reverses(convention)) {
       std::reverse(poses->begin(), poses->end());  // E_j E_i^-1
     } else if (convention == auc_convention::da3) {
       // E_i^-1 E_j of E_i E_0^-1 is the relative pose of the inverse poses.
@@ -4482,6 +5528,271 @@ inline auc_result auc(const trajectory& estimate,
 
 }  // namespace aib::pose
 
+// aib/pose/auc_breakdown.hpp
+
+namespace aib::pose {
+
+/// The AUC of some of the pairs.
+struct partial_auc {
+  std::optional<recall> value;  ///< nothing where no pair has a direction
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;
+};
+
+struct auc_by_batch_result {
+  partial_auc intra;  ///< pairs of frames of one batch; needs no alignment
+  partial_auc cross;  ///< pairs of frames of two batches; means something after alignment only
+};
+
+struct gap_range {
+  std::size_t first;  ///< smallest difference of two frames' places in the trajectory
+  std::size_t last;   ///< largest, inclusive
+};
+
+struct auc_by_gap_result {
+  gap_range gap;
+  partial_auc part;
+};
+
+namespace detail {
+
+/// The frames of a convention and the place of each in its order.
+struct placed_frames {
+  registered_frames frames;
+  std::vector<std::size_t> place;  // in the associated trajectories, in the order of the frames
+};
+
+inline placed_frames placed(const trajectory& estimate,
+                            const trajectory& reference,
+                            const auc_options& options) {
+  placed_frames out{registered("auc", estimate, reference), {}};
+  out.place = out.frames.index;
+  if (reverses(options.convention)) std::reverse(out.place.begin(), out.place.end());
+  if (!out.place.empty()) out.frames = frames_for(options.convention, std::move(out.frames));
+  return out;
+}
+
+inline partial_auc part_of(const joint_counts& counts, const recall_thresholds& thresholds) {
+  partial_auc out{{}, counts.pairs(), counts.without_direction()};
+  if (out.n_pairs > out.n_zero_baseline) out.value = thresholds.of(counts);
+  return out;
+}
+
+}  // namespace detail
+
+/// AUC over the pairs within batches and over those across batches.
+///
+/// batch   the batch of each frame of the associated trajectories
+///
+/// Per-batch alignment to the reference helps the latter, and the former shows the method alone.
+/// Throws argument_error if the trajectories are not associated, `batch` has another length or the
+/// convention is not one of thresholds (colmap, exact).
+inline auc_by_batch_result auc_by_batch(const trajectory& estimate,
+                                        const trajectory& reference,
+                                        std::span<const std::size_t> batch,
+                                        const auc_options& options = {}) {
+  if (batch.size() != estimate.size()) {
+    throw argument_error(message("auc_by_batch: the batch of each of ", estimate.size(),
+                                 " frames expected, found ", batch.size()));
+  }
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const detail::placed_frames all = detail::placed(estimate, reference, options);
+  const auto batch_of = [&](std::size_t frame) { return batch[all.place[frame]]; };
+  std::vector<std::size_t> order(all.place.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return batch_of(a) < batch_of(b); });
+  std::vector<math::rigid3> e, r;
+  for (const std::size_t i : order) {
+    e.push_back(all.frames.estimate[i]);
+    r.push_back(all.frames.reference[i]);
+  }
+  const auto end_of_batch = [&](std::size_t i) {
+    const auto end = std::upper_bound(
+        order.begin() + static_cast<std::ptrdiff_t>(i), order.end(), batch_of(order[i]),
+        [&](std::size_t b, std::size_t frame) { return b < batch_of(frame); });
+    return static_cast<std::size_t>(end - order.begin());
+  };
+  const joint_counts intra = frame_pairs(e, r).count_rows(
+      thresholds.rotation_bins(), thresholds.translation_bins(),
+      [&](std::size_t i) {
+        return pair_row{i + 1, end_of_batch(i)};
+      },
+      options.threads, options.control);
+  joint_counts cross = frame_pairs(all.frames.estimate, all.frames.reference)
+                           .count(thresholds.rotation_bins(), thresholds.translation_bins(),
+                                  options.threads, options.control);
+  cross -= intra;
+  return {detail::part_of(intra, thresholds), detail::part_of(cross, thresholds)};
+}
+
+/// AUC over the pairs of frames that lie so many places apart: how far errors accumulate.
+///
+/// Throws as auc_by_batch, and argument_error if a range is empty or begins at 0.
+inline std::vector<auc_by_gap_result> auc_by_gap(const trajectory& estimate,
+                                                 const trajectory& reference,
+                                                 std::span<const gap_range> gaps,
+                                                 const auc_options& options = {}) {
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const detail::placed_frames all = detail::placed(estimate, reference, options);
+  const frame_pairs pairs(all.frames.estimate, all.frames.reference);
+  std::vector<std::size_t> place = all.place;  // ascending
+  if (reverses(options.convention)) {
+    for (std::size_t& p : place) p = estimate.size() - 1 - p;
+  }
+  std::vector<auc_by_gap_result> out;
+  for (const gap_range& gap : gaps) {
+    if (gap.first < 1 || gap.last < gap.first) {
+      throw argument_error(message("auc_by_gap: a range of gaps from 1 on expected, found ",
+                                   gap.first, "..", gap.last));
+    }
+    const auto row = [&](std::size_t i) {
+      const auto begin = std::lower_bound(place.begin(), place.end(), place[i] + gap.first);
+      const auto end = std::upper_bound(begin, place.end(), place[i] + gap.last);
+      return pair_row{static_cast<std::size_t>(begin - place.begin()),
+                      static_cast<std::size_t>(end - place.begin())};
+    };
+    const joint_counts counts =
+        pairs.count_rows(thresholds.rotation_bins(), thresholds.translation_bins(), row,
+                         options.threads, options.control);
+    out.push_back({gap, detail::part_of(counts, thresholds)});
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/delta_pairs.hpp
+
+namespace aib::pose {
+
+enum class delta_unit { frames, m, deg, rad };
+
+struct delta_options {
+  double delta = 1;
+  delta_unit unit = delta_unit::frames;
+  bool all_pairs = false;  ///< every start, not one pair after another
+  double tolerance = 0.1;  ///< all pairs by path or angle: share of delta that a pair may miss
+};
+
+struct frame_pair {
+  std::size_t from;
+  std::size_t to;
+};
+
+/// Length of the path from the first pose to each.
+[[nodiscard]] inline std::vector<double> path_lengths(std::span<const math::rigid3> poses) {
+  std::vector<double> out;
+  double length = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) length += (poses[i].translation - poses[i - 1].translation).norm();
+    out.push_back(length);
+  }
+  return out;
+}
+
+namespace detail {
+
+[[nodiscard]] inline double turn(const math::rigid3& a, const math::rigid3& b, delta_unit unit) {
+  const double angle = math::rotation_angle(a.rotation.transpose() * b.rotation);
+  return unit == delta_unit::deg ? math::degrees(angle) : angle;
+}
+
+inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_options& options) {
+  const auto delta = static_cast<std::size_t>(options.delta);
+  const std::size_t step = options.all_pairs ? 1 : delta;
+  std::vector<frame_pair> out;
+  for (std::size_t i = 0; i + delta < n; i += step) out.push_back({i, i + delta});
+  return out;
+}
+
+/// Of every place on a path but the last the one whose distance is nearest to delta, the earlier of
+/// two, where it misses it by at most a share of delta.
+inline std::vector<frame_pair> nearest_along_path(std::span<const double> path,
+                                                  double delta,
+                                                  double tolerance) {
+  std::vector<frame_pair> out;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const auto first = path.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto miss = [&](auto at) { return std::abs(*at - path[i] - delta); };
+    auto best = std::lower_bound(first, path.end(), path[i] + delta);
+    if (best == path.end() || (best != first && miss(best - 1) <= miss(best))) --best;
+    best = std::lower_bound(first, best, *best);  // of equal ones the first
+    if (miss(best) <= tolerance * delta)
+      out.push_back({i, static_cast<std::size_t>(best - path.begin())});
+  }
+  return out;
+}
+
+inline std::vector<frame_pair> pairs_by_path(std::span<const math::rigid3> poses,
+                                             const delta_options& options) {
+  if (options.all_pairs)
+    return nearest_along_path(path_lengths(poses), options.delta, options.tolerance);
+  std::vector<frame_pair> out;
+  std::vector<std::size_t> stops;  // as evo: the first pair begins at the first stop, not at 0
+  double since = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) since += (poses[i].translation - poses[i - 1].translation).norm();
+    if (since < options.delta) continue;
+    stops.push_back(i);
+    since = 0;
+  }
+  for (std::size_t k = 1; k < stops.size(); ++k) out.push_back({stops[k - 1], stops[k]});
+  return out;
+}
+
+inline std::vector<frame_pair> pairs_by_angle(std::span<const math::rigid3> poses,
+                                              const delta_options& options) {
+  std::vector<frame_pair> out;
+  if (options.all_pairs) {
+    const double slack = options.tolerance * options.delta;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      for (std::size_t j = i + 1; j < poses.size(); ++j) {
+        const double angle = turn(poses[i], poses[j], options.unit);
+        if (options.delta - slack <= angle && angle <= options.delta + slack) out.push_back({i, j});
+      }
+    }
+    return out;
+  }
+  double since = 0;
+  std::size_t from = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    since += turn(poses[i - 1], poses[i], options.unit);
+    if (since < options.delta) continue;
+    out.push_back({from, i});
+    from = i;
+    since = 0;
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Pairs of poses that are delta frames, metres of path, or degrees or radians of turning apart, in
+/// evo's way: one after another (turning adds up from pose to pose), or all (by angle: the angle
+/// between the two).
+///
+/// Throws argument_error unless delta > 0, and whole for frames; undefined_error if no pair is that
+/// far apart.
+/// Source: evo, core/filters.py.
+inline std::vector<frame_pair> delta_pairs(std::span<const math::rigid3> poses,
+                                           const delta_options& options) {
+  const bool whole = options.delta == std::floor(options.delta);
+  if (!(options.delta > 0) || (options.unit == delta_unit::frames && !whole))
+    throw argument_error(message("delta > 0, whole for frames, expected, found ", options.delta));
+  std::vector<frame_pair> pairs =
+      options.unit == delta_unit::frames ? detail::pairs_by_frames(poses.size(), options)
+      : options.unit == delta_unit::m    ? detail::pairs_by_path(poses, options)
+                                         : detail::pairs_by_angle(poses, options);
+  if (pairs.empty()) {
+    throw undefined_error(
+        message("no two of ", poses.size(), " poses are a delta of ", options.delta, " apart"));
+  }
+  return pairs;
+}
+
+}  // namespace aib::pose
+
 // aib/pose/focal.hpp
 
 namespace aib::pose {
@@ -4504,6 +5815,11 @@ struct focal_error_result {
   std::vector<double> each;  ///< relative error of each
 };
 
+[[nodiscard]] inline bool same_camera(const math::camera& a, const math::camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         a.parameters == b.parameters;
+}
+
 /// Focal length of a camera as it would be for an image of another size: fx goes with the width, fy
 /// with the height; their mean. Pixels. Throws argument_error where a model has no focal length.
 inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uint64_t height) {
@@ -4519,15 +5835,11 @@ inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uin
 /// Throws undefined_error if there is no view, argument_error where a model has no focal length.
 inline focal_error_result focal_error(std::span<const camera_pair> views,
                                       focal_over over = focal_over::views) {
-  const auto same = [](const math::camera& a, const math::camera& b) {
-    return a.model == b.model && a.width == b.width && a.height == b.height &&
-           a.parameters == b.parameters;
-  };
   focal_error_result out{0, 0, {}};
   std::vector<const camera_pair*> counted;
   for (const camera_pair& view : views) {
     const auto is_view = [&](const camera_pair* c) {
-      return same(c->estimate, view.estimate) && same(c->reference, view.reference);
+      return same_camera(c->estimate, view.estimate) && same_camera(c->reference, view.reference);
     };
     if (over == focal_over::cameras) {
       if (std::any_of(counted.begin(), counted.end(), is_view)) continue;
@@ -4542,6 +5854,166 @@ inline focal_error_result focal_error(std::span<const camera_pair> views,
   out.n = out.each.size();
   if (out.n == 0) throw undefined_error("focal_error: no view");
   out.mre /= static_cast<double>(out.n);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/intrinsics.hpp
+
+namespace aib::pose {
+
+/// Differences of two cameras, in pixels of the reference's image.
+struct reprojection_difference_result {
+  double mean;  ///< over the image plane
+  double max;
+  std::uint64_t n;       ///< pixels of the grid that both cameras see
+  std::uint64_t n_lost;  ///< pixels whose ray one of them does not have
+};
+
+/// How far apart two cameras show the same direction: rays through a grid of the reference's image,
+/// projected by the estimate, whose pixels are rescaled to the reference's size. Compares any two
+/// models.
+///
+/// cells   of the grid along the longer side; their centres are taken
+///
+/// Throws argument_error if a size is unknown, undefined_error if no ray is seen by both.
+inline reprojection_difference_result reprojection_difference(const math::camera& estimate,
+                                                              const math::camera& reference,
+                                                              std::size_t cells = 32) {
+  if (estimate.width * estimate.height * reference.width * reference.height * cells == 0)
+    throw argument_error("reprojection_difference: image sizes and a grid expected");
+  const auto width = static_cast<double>(reference.width);
+  const auto height = static_cast<double>(reference.height);
+  const Eigen::Array2d rescale(width / static_cast<double>(estimate.width),
+                               height / static_cast<double>(estimate.height));
+  const double cell = std::max(width, height) / static_cast<double>(cells);
+  const auto columns = static_cast<std::size_t>(std::max(1.0, std::round(width / cell)));
+  const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(height / cell)));
+  stats::moments differences;
+  std::uint64_t lost = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Eigen::Vector2d pixel(
+          (static_cast<double>(column) + 0.5) * width / static_cast<double>(columns),
+          (static_cast<double>(row) + 0.5) * height / static_cast<double>(rows));
+      const auto ray = unproject(reference, pixel);
+      const auto seen = ray ? project(estimate, *ray) : std::nullopt;
+      if (seen)
+        differences.add((seen->array() * rescale - pixel.array()).matrix().norm());
+      else
+        ++lost;
+    }
+  }
+  if (differences.count() == 0) {
+    throw undefined_error(
+        message("reprojection_difference: none of ", lost, " rays is seen by both cameras"));
+  }
+  return {differences.mean(), differences.max(), differences.count(), lost};
+}
+
+struct intrinsics_error_result {
+  focal_error_result focal;
+  double principal_point_px;  ///< mean distance of the principal points, at the reference's size
+  double focal_spread;        ///< standard deviation of the estimated focal length over its mean
+  double reprojection_px;     ///< mean reprojection_difference
+  double reprojection_max_px;
+};
+
+/// Intrinsics of views against those of the reference, all at the reference's image size.
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length or
+/// an image no size.
+inline intrinsics_error_result intrinsics_error(std::span<const camera_pair> views) {
+  intrinsics_error_result out{focal_error(views), 0, 0, 0, 0};
+  stats::moments point, focal, reprojection;
+  reprojection_difference_result d{};
+  const camera_pair* before = nullptr;
+  for (const camera_pair& view : views) {
+    const math::camera &e = view.estimate, &r = view.reference;
+    if (!before || !same_camera(before->estimate, e) || !same_camera(before->reference, r))
+      d = reprojection_difference(e, r);
+    before = &view;
+    const double sx = static_cast<double>(r.width) / static_cast<double>(e.width);
+    const double sy = static_cast<double>(r.height) / static_cast<double>(e.height);
+    point.add(std::hypot(e.cx() * sx - r.cx(), e.cy() * sy - r.cy()));
+    focal.add(focal_at_size(e, r.width, r.height));
+    reprojection.add(d.mean);
+    out.reprojection_max_px = std::max(out.reprojection_max_px, d.max);
+  }
+  out.principal_point_px = point.mean();
+  out.focal_spread = focal.deviation() / focal.mean();
+  out.reprojection_px = reprojection.mean();
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/kitti_odometry.hpp
+
+namespace aib::pose {
+
+struct kitti_odometry_options {
+  std::vector<double> lengths_m = {100, 200, 300, 400, 500, 600, 700, 800};
+  std::size_t step = 10;  ///< frames from one start to the next
+};
+
+/// Mean errors of segments.
+struct segment_errors {
+  double translation_percent;  ///< of the segment's length
+  double rotation_deg_per_m;
+  std::uint64_t n;  ///< segments
+};
+
+struct kitti_odometry_result {
+  segment_errors all;                     ///< over all segments, each counts once
+  std::vector<double> lengths_m;          ///< those that have a segment
+  std::vector<segment_errors> by_length;  ///< one of each
+};
+
+/// KITTI odometry's errors: over segments of the reference's path, from every `step`-th frame, the
+/// motion (est_i^-1 est_j)^-1 (ref_i^-1 ref_j), divided by the segment's length.
+///
+/// Invariant to a rigid motion of either side. Frames without a finite pose are passed over. Throws
+/// argument_error if the trajectories are not associated, undefined_error if the path is shorter
+/// than every length.
+/// Source: Geiger, Lenz, Urtasun, CVPR 2012; devkit, evaluate_odometry.cpp.
+inline kitti_odometry_result kitti_odometry(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            const kitti_odometry_options& options = {}) {
+  if (options.step == 0) throw argument_error("kitti_odometry: step > 0 expected");
+  const registered_frames frames = registered("kitti_odometry", estimate, reference);
+  const std::vector<double> path = path_lengths(frames.reference);
+  kitti_odometry_result out{};
+  for (const double length : options.lengths_m) {
+    if (!(length > 0))
+      throw argument_error(message("kitti_odometry: lengths > 0 expected, found ", length));
+    segment_errors sum{};
+    for (std::size_t i = 0; i < path.size(); i += options.step) {
+      std::size_t j = i;
+      while (j < path.size() && !(path[j] > path[i] + length)) ++j;
+      if (j == path.size()) break;
+      const auto motion = [&](const std::vector<math::rigid3>& poses) {
+        return poses[i].inverse() * poses[j];
+      };
+      const math::rigid3 error = motion(frames.estimate).inverse() * motion(frames.reference);
+      sum.translation_percent += 100 * error.translation.norm() / length;
+      sum.rotation_deg_per_m += math::degrees(math::rotation_angle(error.rotation)) / length;
+      ++sum.n;
+    }
+    if (sum.n == 0) continue;
+    const auto n = static_cast<double>(sum.n);
+    out.all.translation_percent += sum.translation_percent;
+    out.all.rotation_deg_per_m += sum.rotation_deg_per_m;
+    out.all.n += sum.n;
+    out.lengths_m.push_back(length);
+    out.by_length.push_back({sum.translation_percent / n, sum.rotation_deg_per_m / n, sum.n});
+  }
+  if (out.all.n == 0) {
+    throw undefined_error(message("kitti_odometry: no segment; the reference's path is ",
+                                  path.empty() ? 0 : path.back(), " m long"));
+  }
+  out.all.translation_percent /= static_cast<double>(out.all.n);
+  out.all.rotation_deg_per_m /= static_cast<double>(out.all.n);
   return out;
 }
 
@@ -4667,6 +6139,195 @@ inline relative_angles_result relative_angles(const trajectory& estimate,
     const std::size_t below = bins.bins_below(tau);
     out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
     out.rta.push_back(static_cast<double>(counts.sum(bins.size(), 0, below)) / n);
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/rpe.hpp
+
+namespace aib::pose {
+
+/// Whose path or turning tells which poses are a delta apart.
+enum class pairs_from { estimate, reference };
+
+struct rpe_options {
+  pose_relation relation = pose_relation::translation;
+  delta_options pairs = {};
+  pairs_from from = pairs_from::estimate;  ///< evo's default
+};
+
+/// Relative pose error: of each pair of poses a delta apart the motion
+/// E = (ref_i^-1 ref_j)^-1 (est_i^-1 est_j). Frames without a finite pose are passed over before
+/// deltas are counted.
+///
+/// Invariant to a rigid motion of either side. Pairs with a reference distance of 0 have no
+/// point_distance_ratio and are left out. Throws argument_error if the trajectories are not
+/// associated or delta is not positive, undefined_error if no pair is a delta apart.
+/// Source: Sturm et al., IROS 2012, Sec. IV-A; evo, core/metrics.py, RPE.
+inline pose_errors rpe(const trajectory& estimate,
+                       const trajectory& reference,
+                       const rpe_options& options = {}) {
+  const registered_frames frames = registered("rpe", estimate, reference);
+  const auto& path = options.from == pairs_from::estimate ? frames.estimate : frames.reference;
+  const bool ratio = options.relation == pose_relation::point_distance_ratio;
+  pose_errors out;
+  for (const frame_pair& pair : delta_pairs(path, options.pairs)) {
+    const auto motion = [&](const std::vector<math::rigid3>& poses) {
+      return poses[pair.from].inverse() * poses[pair.to];
+    };
+    const math::rigid3 est = motion(frames.estimate), ref = motion(frames.reference);
+    double error = magnitude(options.relation, ref.inverse() * est);
+    if (ratio || options.relation == pose_relation::point_distance)
+      error = std::abs(ref.translation.norm() - est.translation.norm());
+    if (ratio) {
+      if (ref.translation.norm() == 0) continue;
+      error *= 100 / ref.translation.norm();
+    }
+    out.errors.push_back(error);
+    out.index.push_back(frames.index[pair.to]);
+  }
+  if (out.errors.empty()) throw undefined_error("rpe: no reference pose moves over a delta");
+  out.summary = stats::summarize(out.errors);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/sub_trajectory.hpp
+
+namespace aib::pose {
+
+struct sub_trajectory_options {
+  std::vector<double> lengths = {};  ///< empty: 10, 20, .. 50 % of the reference's path
+  double tolerance = 0.2;            ///< share of the length that a sub-trajectory may miss
+};
+
+/// Errors over the sub-trajectories of one length.
+struct sub_trajectory_errors {
+  double length;
+  stats::summary translation;          ///< unit of the positions
+  stats::summary translation_percent;  ///< of the length
+  stats::summary rotation_deg;
+  stats::summary rotation_deg_per_m;
+  stats::summary yaw_deg;      ///< about the world's z axis
+  stats::summary gravity_deg;  ///< of roll and pitch: what gravity would tell
+};
+
+/// Relative errors by the length of sub-trajectories, as rpg_trajectory_evaluation has them: every
+/// frame starts one that ends where the reference's path is nearest to the length; the error
+/// (ref_i^-1 ref_j)^-1 (est_i^-1 est_j) is turned into the estimate's world. Lengths with fewer
+/// than two sub-trajectories are left out.
+///
+/// Invariant to a translation and a turn about z of either side. Frames without a finite pose are
+/// passed over. Throws argument_error if the trajectories are not associated, undefined_error if no
+/// length has two.
+/// Source: Zhang and Scaramuzza, IROS 2018, Sec. IV; rpg_trajectory_evaluation,
+/// compute_trajectory_errors.py.
+inline std::vector<sub_trajectory_errors> sub_trajectories(
+    const trajectory& estimate,
+    const trajectory& reference,
+    const sub_trajectory_options& options = {}) {
+  const registered_frames frames = registered("sub_trajectories", estimate, reference);
+  const std::vector<double> path = path_lengths(frames.reference);
+  std::vector<double> lengths = options.lengths;
+  if (lengths.empty() && !path.empty()) {
+    for (int k = 1; k <= 5; ++k) lengths.push_back(path.back() * k / 10);
+  }
+  std::vector<sub_trajectory_errors> out;
+  for (const double length : lengths) {
+    std::vector<double> translation, percent, rotation, per_m, yaw, gravity;
+    for (const frame_pair& pair : detail::nearest_along_path(path, length, options.tolerance)) {
+      const auto motion = [&](const std::vector<math::rigid3>& poses) {
+        return poses[pair.from].inverse() * poses[pair.to];
+      };
+      const math::rigid3 error = motion(frames.reference).inverse() * motion(frames.estimate);
+      const Eigen::Matrix3d& w = frames.estimate[pair.to].rotation;
+      const Eigen::Matrix3d r = w * error.rotation * w.transpose();
+      translation.push_back(error.translation.norm());
+      percent.push_back(100 * translation.back() / length);
+      rotation.push_back(math::degrees(math::rotation_angle(r)));
+      per_m.push_back(rotation.back() / length);
+      yaw.push_back(math::degrees(std::abs(std::atan2(r(1, 0), r(0, 0)))));
+      const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+      gravity.push_back(math::degrees(std::hypot(pitch, std::atan2(r(2, 1), r(2, 2)))));
+    }
+    if (translation.size() < 2) continue;
+    out.push_back({length, stats::summarize(translation), stats::summarize(percent),
+                   stats::summarize(rotation), stats::summarize(per_m), stats::summarize(yaw),
+                   stats::summarize(gravity)});
+  }
+  if (out.empty()) {
+    throw undefined_error(message("sub_trajectories: no length has two; the reference's path is ",
+                                  path.empty() ? 0 : path.back(), " long"));
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/worst_pairs.hpp
+
+namespace aib::pose {
+
+struct worst_pairs_options {
+  std::size_t n = 10;    ///< how many
+  unsigned threads = 0;  ///< 0: all
+  struct control control = {};
+};
+
+struct worst_pair {
+  std::string first, second;  ///< names, or numbers where there are none
+  double rotation_deg;
+  std::optional<double> translation_deg;  ///< signed direction; nothing where there is none
+};
+
+/// The pairs of frames with the largest error, rotation or direction, in descending order.
+/// Throws argument_error if the trajectories are not associated.
+inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
+                                           const trajectory& reference,
+                                           const worst_pairs_options& options = {}) {
+  const registered_frames frames = registered("worst_pairs", estimate, reference);
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  struct found {
+    double error;
+    std::size_t i, j;
+    pair_error angles;
+    bool operator<(const found& o) const {
+      if (error != o.error) return error > o.error;
+      return i != o.i ? i < o.i : j < o.j;
+    }
+  };
+  const auto keep_worst = [&](std::vector<found>& list) {
+    const std::size_t n = std::min(options.n, list.size());
+    std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(n), list.end());
+    list.resize(n);
+  };
+  const auto worst = reduce_chunks<std::vector<found>>(
+      pairs.frames(), 64, options.threads, options.control, std::vector<found>(),
+      [&](const chunk& c) {
+        std::vector<found> list;
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          for (std::size_t j = i + 1; j < pairs.frames(); ++j) {
+            const pair_error e = pairs.error(i, j);
+            list.push_back({std::max(e.rotation_deg, e.translation_deg.value_or(0)), i, j, e});
+            if (list.size() >= 2 * options.n + 1000) keep_worst(list);
+          }
+          keep_worst(list);
+        }
+        return list;
+      },
+      [&](std::vector<found> a, std::vector<found> b) {
+        a.insert(a.end(), b.begin(), b.end());
+        keep_worst(a);
+        return a;
+      });
+  std::vector<worst_pair> out;
+  for (const found& f : worst) {
+    out.push_back({frame_name(estimate, reference, frames.index[f.i]),
+                   frame_name(estimate, reference, frames.index[f.j]), f.angles.rotation_deg,
+                   f.angles.translation_deg});
   }
   return out;
 }
@@ -4854,14 +6515,14 @@ class finite_points {
 namespace aib::cloud {
 
 /// What becomes of a distance that is not below the maximum.
-enum class beyond_rule {
+enum class maximum_rule {
   drop,   ///< left out of all statistics but shares (DTU)
   clamp,  ///< counts as the maximum (CloudCompare)
 };
 
 struct distance_options {
   std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  beyond_rule beyond = beyond_rule::drop;
+  maximum_rule rule = maximum_rule::drop;
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
@@ -4987,7 +6648,7 @@ inline distances::distances(std::vector<float> values, const distance_options& o
 
 inline void distances::apply_maximum() {
   if (!options_.max_distance) return;
-  const bool drop = options_.beyond == beyond_rule::drop;
+  const bool drop = options_.rule == maximum_rule::drop;
   const float beyond =
       drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
   for (float& value : values_) {
@@ -5003,7 +6664,7 @@ inline void distances::summarize() {
     std::size_t dropped = 0;
     double sum = 0, squares = 0, max = 0;
   };
-  const bool skip_infinite = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
   const auto sum_chunk = [&](const chunk& c) {
     sums s;
     for (std::size_t i = c.begin; i < c.end; ++i) {
@@ -5029,7 +6690,7 @@ inline void distances::summarize() {
 }
 
 inline std::size_t distances::n_counted() const {
-  const bool drop = options_.max_distance && options_.beyond == beyond_rule::drop;
+  const bool drop = options_.max_distance && options_.rule == maximum_rule::drop;
   return n_finite() - (drop ? n_beyond_ : 0);
 }
 
@@ -5096,7 +6757,7 @@ namespace aib::cloud {
 struct compare_options {
   std::vector<double> tau = {};             ///< thresholds of precision, recall and F-score
   std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  beyond_rule beyond = beyond_rule::drop;
+  maximum_rule rule = maximum_rule::drop;
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
@@ -5203,10 +6864,363 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                                         const compare_options& options = {}) {
   const auto both = distances_both_ways(estimate, reference,
                                         {.max_distance = options.max_distance,
-                                         .beyond = options.beyond,
+                                         .rule = options.rule,
                                          .threads = options.threads,
                                          .control = options.control});
   return score(both.to_reference, both.to_estimate, options.tau);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/select.hpp
+
+namespace aib::cloud {
+
+namespace detail {
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& all, std::span<const std::size_t> index) {
+  std::vector<T> some;
+  if (all.empty()) return some;
+  some.reserve(index.size());
+  for (const std::size_t i : index) some.push_back(all[i]);
+  return some;
+}
+
+}  // namespace detail
+
+/// The points of some indices, in their order, with all that belongs to them.
+[[nodiscard]] inline cloud select(const cloud& c, std::span<const std::size_t> index) {
+  return {.origin = c.origin,
+          .points = detail::picked(c.points, index),
+          .normals = detail::picked(c.normals, index),
+          .colors = detail::picked(c.colors, index),
+          .labels = detail::picked(c.labels, index),
+          .warnings = c.warnings};
+}
+
+/// The points of whose index `keep(i)` is true.
+template <class Keep>
+[[nodiscard]] cloud select_where(const cloud& c, Keep&& keep) {
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (keep(i)) index.push_back(i);
+  }
+  return select(c, index);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/crop.hpp
+
+namespace aib::cloud {
+
+/// A part of space.
+template <class Volume>
+concept volume = requires(const Volume& v, const Eigen::Vector3d& p) {
+  { v.contains(p) } -> std::same_as<bool>;
+};
+
+/// A box in any orientation, its faces included.
+struct oriented_box {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d world_from_box = Eigen::Matrix3d::Identity();  ///< rotation
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();                ///< along the box's own axes
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d from_centre = p - centre;
+    const Eigen::Vector3d in_box = world_from_box.transpose() * from_centre;
+    return (2 * in_box.array().abs() <= size.array()).all();
+  }
+};
+
+/// A prism over a polygon: the crop volume of Tanks and Temples, Open3D's SelectionPolygonVolume.
+///
+/// A point is inside where its coordinate on `axis` is in [low, high] and where the polygon, seen
+/// along that axis, lies around it by the even-odd rule.
+struct polygon_volume {
+  int axis = 2;  ///< 0, 1 or 2: the polygon is seen along it
+  double low = 0;
+  double high = 0;
+  std::vector<Eigen::Vector3d> polygon = {};  ///< at least three corners; `axis` plays no part
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    if (!(p[axis] >= low && p[axis] <= high)) return false;
+    const int u = axis == 0 ? 1 : 0;
+    const int v = axis == 2 ? 1 : 2;
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Eigen::Vector3d& a = polygon[i];
+      const Eigen::Vector3d& b = polygon[(i + 1) % polygon.size()];
+      if ((a[v] < p[v]) == (b[v] < p[v])) continue;
+      if (a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u]) < p[u]) inside = !inside;
+    }
+    return inside;
+  }
+};
+
+/// The points of a cloud that lie in a volume. Points that are not finite lie in none.
+template <volume Volume>
+[[nodiscard]] cloud crop(const cloud& c, const Volume& volume) {
+  return select_where(c, [&](std::size_t i) { return volume.contains(c.position(i)); });
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/neighbours.hpp
+
+namespace aib::cloud {
+
+/// Another point and how far it is.
+struct neighbour {
+  std::size_t index;  ///< in the cloud
+  double distance;
+};
+
+/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
+/// Borrows nothing. For the one nearest point of millions see cloud::distances.
+class neighbours {
+ public:
+  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  neighbours(const neighbours&) = delete;
+  neighbours& operator=(const neighbours&) = delete;
+
+  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
+  /// finds itself first.
+  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
+    k = std::min(k, points_.position.size());
+    std::vector<std::size_t> index(k);
+    std::vector<double> squared(k);
+    const Eigen::Vector3d local = p - points_.origin;
+    const std::size_t n =
+        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
+    std::vector<neighbour> found;
+    for (std::size_t i = 0; i < n; ++i) {
+      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
+    }
+    return found;
+  }
+
+  /// How many points lie nearer than `radius`.
+  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
+    const Eigen::Vector3d local = p - points_.origin;
+    std::vector<std::pair<std::size_t, double>> found;
+    nanoflann::SearchParams unsorted;
+    unsorted.sorted = false;
+    return tree_.radiusSearch(local.data(), radius * radius, found, unsorted);
+  }
+
+ private:
+  struct finite_positions {
+    Eigen::Vector3d origin;
+    std::vector<Eigen::Vector3d> position;
+    std::vector<std::size_t> source;
+
+    explicit finite_positions(const cloud& c) : origin(c.origin) {
+      for (std::size_t i = 0; i < c.size(); ++i) {
+        if (!is_finite(c.points[i])) continue;
+        position.push_back(c.points[i].cast<double>());
+        source.push_back(i);
+      }
+    }
+
+    // The interface that nanoflann asks for.
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return position[i][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
+
+  finite_positions points_;
+  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+};
+
+}  // namespace aib::cloud
+
+// aib/cloud/normals.hpp
+
+namespace aib::cloud {
+
+struct normal_options {
+  std::size_t neighbours = 30;  ///< the point itself included
+  unsigned threads = 0;         ///< 0: all
+};
+
+/// The cloud with a normal for each point: the direction in which its nearest neighbours spread
+/// least. The sign is arbitrary. A point that is not finite, or has fewer than two others, gets
+/// (0, 0, 1).
+/// Source: Hoppe et al., SIGGRAPH 1992, section 3.2.
+[[nodiscard]] inline cloud with_normals(const cloud& c, const normal_options& options = {}) {
+  const neighbours search(c);
+  cloud result = c;
+  result.normals.assign(c.size(), Eigen::Vector3f(0, 0, 1));
+  for_each_chunk(c.size(), 1024, options.threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (!is_finite(c.points[i])) continue;
+      const auto found = search.nearest(c.position(i), options.neighbours);
+      if (found.size() < 3) continue;
+      Eigen::Vector3d mean(0, 0, 0);
+      for (const neighbour& n : found) mean += c.points[n.index].cast<double>();
+      mean /= static_cast<double>(found.size());
+      Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+      for (const neighbour& n : found) {
+        const Eigen::Vector3d d = c.points[n.index].cast<double>() - mean;
+        covariance += d * d.transpose();
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+      const Eigen::Vector3d least = solver.eigenvectors().col(0);
+      result.normals[i] = least.cast<float>();
+    }
+  });
+  return result;
+}
+
+/// Agreement of normals: |cosine| of the angle to the normal of the nearest point of the other
+/// cloud.
+struct normal_consistency_result {
+  double estimate_mean;  ///< over the estimate ("NC1" of CUT3R)
+  double estimate_median;
+  double reference_mean;  ///< over the reference ("NC2")
+  double reference_median;
+};
+
+namespace detail {
+
+inline std::vector<double> normal_cosines(const cloud& from, const cloud& to, unsigned threads) {
+  const neighbours search(to);
+  std::vector<double> cosine(from.size(), std::numeric_limits<double>::quiet_NaN());
+  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (!is_finite(from.points[i])) continue;
+      const auto found = search.nearest(from.position(i), 1);
+      if (found.empty()) continue;
+      const Eigen::Vector3d a = from.normals[i].cast<double>();
+      const Eigen::Vector3d b = to.normals[found[0].index].cast<double>();
+      cosine[i] = std::abs(a.dot(b));
+    }
+  });
+  std::erase_if(cosine, [](double c) { return std::isnan(c); });
+  if (cosine.empty()) throw undefined_error("cloud::normal_consistency: no pair of finite points");
+  return cosine;
+}
+
+inline double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace detail
+
+/// How well the normals of two clouds agree, over each cloud. Signs play no part.
+/// Throws argument_error if a cloud has no normals, undefined_error if one has no finite point.
+/// Source: Wang et al., "Continuous 3D perception model with persistent state" (CUT3R), CVPR 2025.
+[[nodiscard]] inline normal_consistency_result normal_consistency(const cloud& estimate,
+                                                                  const cloud& reference,
+                                                                  unsigned threads = 0) {
+  for (const cloud* c : {&estimate, &reference}) {
+    if (c->normals.size() != c->size()) {
+      throw argument_error("cloud::normal_consistency: clouds with normals expected");
+    }
+  }
+  const auto e = detail::normal_cosines(estimate, reference, threads);
+  const auto r = detail::normal_cosines(reference, estimate, threads);
+  const std::span<const double> es(e), rs(r);
+  return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/outliers.hpp
+
+namespace aib::cloud {
+
+struct statistical_options {
+  std::size_t neighbours = 20;  ///< the point itself included
+  double ratio = 2;             ///< standard deviations above the mean that are kept
+  unsigned threads = 0;         ///< 0: all
+};
+
+struct radius_options {
+  double radius = 0;
+  std::size_t neighbours = 2;  ///< more points than this, the point itself included, are kept
+  unsigned threads = 0;        ///< 0: all
+};
+
+namespace detail {
+
+/// A number for each point, of NaN where the point is not finite.
+template <class Measure>
+std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& measure) {
+  std::vector<double> values(c.size(), std::numeric_limits<double>::quiet_NaN());
+  for_each_chunk(c.size(), 1024, threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (is_finite(c.points[i])) values[i] = measure(c.position(i));
+    }
+  });
+  return values;
+}
+
+}  // namespace detail
+
+/// The points whose mean distance to their nearest neighbours is not far above that of all: below
+/// mean + ratio * standard deviation (ddof 1). Duplicates, whose mean distance is 0, go as well.
+/// Source: Rusu et al., RAS 2008; the rule is Open3D's remove_statistical_outlier.
+[[nodiscard]] inline cloud without_statistical_outliers(const cloud& c,
+                                                        const statistical_options& options = {}) {
+  if (options.neighbours == 0 || !(options.ratio > 0)) {
+    throw argument_error("cloud::without_statistical_outliers: neighbours > 0, ratio > 0 expected");
+  }
+  const neighbours search(c);
+  const auto spread = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
+    const auto found = search.nearest(p, options.neighbours);
+    double sum = 0;
+    for (const neighbour& n : found) sum += n.distance;
+    return sum / static_cast<double>(found.size());
+  });
+  double sum = 0, squares = 0, n = 0;
+  for (const double s : spread) {
+    if (s > 0) sum += s, ++n;
+  }
+  const double mean = n > 0 ? sum / n : 0;
+  for (const double s : spread) {
+    if (s > 0) squares += (s - mean) * (s - mean);
+  }
+  const double limit = mean + options.ratio * (n > 1 ? std::sqrt(squares / (n - 1)) : 0);
+  return select_where(c, [&](std::size_t i) { return spread[i] > 0 && spread[i] < limit; });
+}
+
+/// The points that have more than so many points, themselves included, nearer than a radius.
+[[nodiscard]] inline cloud without_radius_outliers(const cloud& c, const radius_options& options) {
+  if (!(options.radius > 0)) {
+    throw argument_error(
+        message("cloud::without_radius_outliers: radius > 0 expected, found ", options.radius));
+  }
+  const neighbours search(c);
+  const auto count = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
+    return static_cast<double>(search.count_within(p, options.radius));
+  });
+  const auto least = static_cast<double>(options.neighbours);
+  return select_where(c, [&](std::size_t i) { return count[i] > least; });
+}
+
+/// n points chosen at random, each subset equally likely, in their order; all where there are
+/// fewer.
+[[nodiscard]] inline cloud random_subset(const cloud& c, std::size_t n, std::uint64_t seed = 1) {
+  std::vector<std::size_t> index(c.size());
+  std::iota(index.begin(), index.end(), std::size_t{0});
+  n = std::min(n, index.size());
+  random_engine random(seed);
+  for (std::size_t i = 0; i < n; ++i)
+    std::swap(index[i], index[i + random.below(index.size() - i)]);
+  index.resize(n);
+  std::sort(index.begin(), index.end());
+  return select(c, index);
 }
 
 }  // namespace aib::cloud
@@ -5257,6 +7271,140 @@ struct mesh {
     return origin + vertices[vertex].cast<double>();
   }
 };
+
+}  // namespace aib::mesh
+
+// aib/mesh/distances.hpp
+
+namespace aib::mesh {
+
+/// The finite triangles of a mesh under a search tree, for many questions.
+class surface_index {
+ public:
+  /// Throws undefined_error if no triangle is finite.
+  explicit surface_index(const mesh& surface, unsigned threads = 0, const control& control = {});
+
+  [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
+  [[nodiscard]] const search::triangle_tree& tree() const { return tree_; }
+
+  /// Index in the mesh of the triangle at a place of the tree.
+  [[nodiscard]] std::size_t triangle_at(std::uint32_t place) const {
+    return kept_[tree_.index(place)];
+  }
+
+ private:
+  std::vector<search::corners> finite_triangles(const mesh& surface);
+  static std::vector<Eigen::Vector3f> first_corners(std::span<const search::corners> triangles);
+
+  Eigen::Vector3d origin_;
+  std::vector<std::size_t> kept_;
+  std::vector<search::corners> corners_;
+  search::triangle_tree tree_;
+};
+
+/// Where on a mesh each point of a cloud is nearest.
+struct closest_points {
+  std::vector<float> distance;          ///< NaN for a point that is not finite
+  std::vector<std::uint32_t> triangle;  ///< index in the mesh; ~0 for a point that is not finite
+};
+
+/// The nearest triangle of each point, exact.
+/// Throws undefined_error if the cloud has no finite point.
+closest_points closest(const cloud::cloud& points,
+                       const surface_index& surface,
+                       unsigned threads = 0,
+                       const control& control = {});
+
+/// Distances from the points of a cloud to the surface of a mesh: exact point-to-triangle
+/// distances, without the floor that sampling the mesh would put under them.
+///
+/// Throws undefined_error if the cloud has no finite point or the mesh no finite triangle.
+[[nodiscard]] cloud::distances distances(const cloud::cloud& points,
+                                         const mesh& surface,
+                                         const cloud::distance_options& options = {});
+
+/// Compares an estimated cloud with a reference mesh: accuracy to the surface itself, completeness
+/// and recall by samples of it (sample::mesh).
+[[nodiscard]] cloud::comparison compare(const cloud::cloud& estimate,
+                                        const mesh& reference,
+                                        const cloud::cloud& samples,
+                                        const cloud::compare_options& options = {});
+
+inline std::vector<search::corners> surface_index::finite_triangles(const mesh& surface) {
+  std::vector<search::corners> finite;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Eigen::Vector3f corner[] = {surface.vertices[a], surface.vertices[b],
+                                      surface.vertices[c]};
+    if (!std::all_of(corner, corner + 3, cloud::is_finite)) continue;
+    finite.emplace_back(corner[0], corner[1], corner[2]);
+    kept_.push_back(t);
+  }
+  if (finite.empty()) {
+    throw undefined_error(
+        message("mesh::distances: no finite triangle (", surface.triangles.size(), " triangles)"));
+  }
+  return finite;
+}
+
+inline std::vector<Eigen::Vector3f> surface_index::first_corners(
+    std::span<const search::corners> triangles) {
+  std::vector<Eigen::Vector3f> first;
+  first.reserve(triangles.size());
+  for (const search::corners& t : triangles) first.push_back(t.corner<float>(0));
+  return first;
+}
+
+inline surface_index::surface_index(const mesh& surface, unsigned threads, const control& control)
+    : origin_(surface.origin),
+      corners_(finite_triangles(surface)),
+      tree_(corners_, search::common_curve(first_corners(corners_), {}), threads, control) {}
+
+inline closest_points closest(const cloud::cloud& points,
+                              const surface_index& surface,
+                              unsigned threads,
+                              const control& control) {
+  const cloud::finite_points from(points, surface.origin());
+  cloud::detail::demand_points("mesh::distances", "estimated", from);
+  if (threads == 0) threads = available_threads();
+  const search::curve order = search::common_curve(from.points(), {});
+  const auto sorted = search::sort_along(from.points(), order, threads, control);
+  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
+  closest_points found{std::vector<float>(points.size(), std::numeric_limits<float>::quiet_NaN()),
+                       std::vector<std::uint32_t>(points.size(), ~std::uint32_t{0})};
+  for_each_chunk(sorted.size(), 4096, threads, control, [&](const chunk& c) {
+    std::uint32_t near = 0;
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const std::size_t p = sorted[i] & mask;
+      const auto best = surface.tree().nearest(from.points()[p], near);
+      near = best.place;
+      found.distance[from.source_index(p)] = static_cast<float>(std::sqrt(best.squared));
+      found.triangle[from.source_index(p)] =
+          static_cast<std::uint32_t>(surface.triangle_at(best.place));
+    }
+  });
+  return found;
+}
+
+inline cloud::distances distances(const cloud::cloud& points,
+                                  const mesh& surface,
+                                  const cloud::distance_options& options) {
+  const surface_index index(surface, options.threads, options.control);
+  auto found = closest(points, index, options.threads, options.control);
+  return cloud::distances(std::move(found.distance), options);
+}
+
+inline cloud::comparison compare(const cloud::cloud& estimate,
+                                 const mesh& reference,
+                                 const cloud::cloud& samples,
+                                 const cloud::compare_options& options) {
+  const cloud::distance_options how{.max_distance = options.max_distance,
+                                    .rule = options.rule,
+                                    .threads = options.threads,
+                                    .control = options.control};
+  return cloud::score(distances(estimate, reference, how), cloud::distances(samples, estimate, how),
+                      options.tau);
+}
 
 }  // namespace aib::mesh
 
@@ -5805,7 +7953,7 @@ inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t pa
 }
 
 inline std::string vector_text(const Eigen::Vector3d& v) {
-  const auto digits = [](double x) { return std::round(x * 1000) / 1000; };
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
   return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
 }
 
@@ -5885,6 +8033,378 @@ inline alignment trajectory(const pose::trajectory& estimate,
     }
   }
   return out;
+}
+
+}  // namespace aib::align
+
+// aib/align/batches.hpp
+
+namespace aib::align {
+
+struct batches_options {
+  std::size_t size = 200;               ///< frames of a batch; the last has what is left
+  std::vector<std::size_t> sizes = {};  ///< frames of each batch instead, in order
+  trajectory_options align = {};        ///< of each batch
+};
+
+/// A batch of frames [begin, end) and how it lies in the world of the reference.
+struct batch_alignment {
+  std::size_t begin;
+  std::size_t end;
+  std::optional<alignment> fit;     ///< nothing where the frames do not tell the transform
+  std::string degenerate;           ///< then why
+  std::optional<double> half_rmse;  ///< of every other inlier, fitted to the others
+  std::optional<double> seam;  ///< jump of the position error from the batch before to this one
+};
+
+/// Aligns each of the sequential batches of associated trajectories on its own. A batch whose
+/// frames do not tell its transform is named, not guessed.
+///
+/// Throws argument_error if the trajectories are not associated or the sizes do not add up to their
+/// length.
+std::vector<batch_alignment> batches(const pose::trajectory& estimate,
+                                     const pose::trajectory& reference,
+                                     const batches_options& options = {});
+
+/// Each batch moved by its transform; the poses of degenerate batches become NaN, unregistered.
+pose::trajectory transformed(const std::vector<batch_alignment>& batches,
+                             pose::trajectory estimate);
+
+namespace detail {
+
+inline std::vector<std::size_t> batch_sizes(std::size_t frames, const batches_options& options) {
+  if (!options.sizes.empty()) {
+    const std::size_t sum =
+        std::accumulate(options.sizes.begin(), options.sizes.end(), std::size_t{0});
+    if (sum == frames) return options.sizes;
+    throw argument_error(
+        message("align::batches: sizes that add up to ", frames, " frames expected, found ", sum));
+  }
+  if (options.size == 0) throw argument_error("align::batches: size > 0 expected");
+  std::vector<std::size_t> sizes(frames / options.size, options.size);
+  if (frames % options.size != 0) sizes.push_back(frames % options.size);
+  return sizes;
+}
+
+inline pose::trajectory slice(const pose::trajectory& t, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> indices(end - begin);
+  std::iota(indices.begin(), indices.end(), begin);
+  return select(t, indices);
+}
+
+/// Error of the odd frames of those chosen under a fit to the even ones.
+inline std::optional<double> half_rmse(const pose_fit& fit,
+                                       const std::vector<std::size_t>& chosen) {
+  std::vector<std::size_t> even, odd;
+  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
+  if (odd.empty()) return std::nullopt;
+  try {
+    const math::sim3 ref_from_est = fit(even);
+    double sse = 0;
+    for (const std::size_t i : odd) sse += std::pow(fit.residual(ref_from_est, i), 2);
+    return std::sqrt(sse / static_cast<double>(odd.size()));
+  } catch (const undefined_error&) {
+    return std::nullopt;
+  }
+}
+
+/// Errors of positions under a transform; NaN where a pose is not finite.
+inline Eigen::Vector3d position_error(const math::sim3& ref_from_est,
+                                      const pose::trajectory& estimate,
+                                      const pose::trajectory& reference,
+                                      std::size_t i) {
+  return ref_from_est * estimate.world_from_camera[i].translation -
+         reference.world_from_camera[i].translation;
+}
+
+inline batch_alignment align_batch(const pose::trajectory& estimate,
+                                   const pose::trajectory& reference,
+                                   std::size_t begin,
+                                   std::size_t end,
+                                   const trajectory_options& options) {
+  batch_alignment out{begin, end, {}, {}, {}, {}};
+  const pose::trajectory e = slice(estimate, begin, end), r = slice(reference, begin, end);
+  try {
+    out.fit = trajectory(e, r, options);
+  } catch (const undefined_error& failure) {
+    out.degenerate = failure.what();
+    return out;
+  }
+  const pose::registered_frames frames = pose::registered("align::batches", e, r);
+  const auto& outliers = out.fit->outliers;
+  std::vector<std::size_t> inliers;
+  for (std::size_t k = 0; k < frames.index.size(); ++k) {
+    if (!std::binary_search(outliers.begin(), outliers.end(), frames.index[k]))
+      inliers.push_back(k);
+  }
+  out.half_rmse = half_rmse(pose_fit(frames.estimate, frames.reference, options.fit), inliers);
+  for (std::size_t& i : out.fit->outliers) i += begin;
+  return out;
+}
+
+}  // namespace detail
+
+inline std::vector<batch_alignment> batches(const pose::trajectory& estimate,
+                                            const pose::trajectory& reference,
+                                            const batches_options& options) {
+  pose::check_associated("align::batches", estimate, reference);
+  std::vector<batch_alignment> out;
+  std::size_t begin = 0;
+  for (const std::size_t size : detail::batch_sizes(estimate.size(), options)) {
+    out.push_back(detail::align_batch(estimate, reference, begin, begin + size, options.align));
+    begin += size;
+  }
+  for (std::size_t k = 1; k < out.size(); ++k) {
+    if (!out[k - 1].fit || !out[k].fit) continue;
+    const std::size_t border = out[k].begin;
+    const double jump =
+        (detail::position_error(out[k].fit->transform, estimate, reference, border) -
+         detail::position_error(out[k - 1].fit->transform, estimate, reference, border - 1))
+            .norm();
+    if (std::isfinite(jump)) out[k].seam = jump;
+  }
+  return out;
+}
+
+inline pose::trajectory transformed(const std::vector<batch_alignment>& batches,
+                                    pose::trajectory estimate) {
+  for (const batch_alignment& batch : batches) {
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+      math::rigid3& pose = estimate.world_from_camera.at(i);
+      if (batch.fit)
+        pose = batch.fit->transform * pose;
+      else
+        pose.translation.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return estimate;
+}
+
+}  // namespace aib::align
+
+// aib/align/icp.hpp
+
+namespace aib::align {
+
+/// What an iteration makes small.
+enum class icp_metric {
+  point,  ///< distances between corresponding points
+  plane,  ///< distances along the normals of the reference
+};
+
+struct icp_options {
+  /// A pair farther apart is none. Several distances are a schedule, run one after another.
+  std::vector<double> max_distance = {};
+  icp_metric metric = icp_metric::point;
+  bool with_scale = false;
+  math::sim3 init = {};              ///< ref_from_est to begin with
+  std::size_t max_iterations = 100;  ///< for each distance of the schedule
+  double relative_change = 1e-9;     ///< of fitness and rmse, below which it has converged
+  unsigned threads = 0;              ///< 0: all
+};
+
+struct icp_result {
+  math::sim3 transform;  ///< ref_from_est
+  double fitness;        ///< share of the estimate that has a corresponding point
+  double rmse;           ///< of the distances of corresponding points
+  std::size_t n_pairs;
+  std::size_t n_iterations;  ///< of the whole schedule
+  bool converged;            ///< the last stage stopped before max_iterations
+};
+
+/// Iterative closest point: moves the estimate onto the reference from a rough alignment.
+///
+/// Correspondences are nearest neighbours in double below max_distance. The update is Umeyama's for
+/// points, a linearised least-squares step for planes (needs normals of the reference). The same
+/// for any number of threads.
+///
+/// Throws argument_error without a positive max_distance or without normals where they are needed,
+/// undefined_error if a cloud has no finite point or no pair is near enough.
+/// Source: Besl and McKay, PAMI 1992; Chen and Medioni, IVC 1992; stopping rule as Open3D.
+[[nodiscard]] icp_result icp(const cloud::cloud& estimate,
+                             const cloud::cloud& reference,
+                             const icp_options& options);
+
+namespace detail {
+
+/// Finite positions of a cloud, counted from an origin, and where each stood.
+struct icp_points {
+  std::vector<Eigen::Vector3d> position;
+  std::vector<std::size_t> source;
+
+  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin) {
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      if (!cloud::is_finite(c.points[i])) continue;
+      position.push_back(c.position(i) - origin);
+      source.push_back(i);
+    }
+    if (position.empty()) {
+      throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
+    }
+  }
+
+  // The interface that nanoflann asks for.
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return position[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// Corresponding points, the estimate's as they lie now.
+struct icp_pairs {
+  std::vector<Eigen::Vector3d> estimate;
+  std::vector<Eigen::Vector3d> reference;
+  std::vector<Eigen::Vector3d> normal;  ///< of the reference, for planes
+  double fitness = 0;
+  double rmse = 0;
+};
+
+class icp_solver {
+ public:
+  icp_solver(const cloud::cloud& estimate,
+             const cloud::cloud& reference,
+             const icp_options& options)
+      : options_(options),
+        reference_cloud_(reference),
+        estimate_(estimate, reference.origin),
+        reference_(reference, reference.origin),
+        tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+
+  [[nodiscard]] icp_result run();
+
+ private:
+  using metric = nanoflann::L2_Simple_Adaptor<double, icp_points>;
+  using tree = nanoflann::KDTreeSingleIndexAdaptor<metric, icp_points, 3, std::size_t>;
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  [[nodiscard]] std::vector<std::size_t> nearest(std::span<const Eigen::Vector3d> moved,
+                                                 double max_distance) const;
+  [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
+  [[nodiscard]] math::sim3 step(const icp_pairs& p) const;
+  [[nodiscard]] math::sim3 plane_step(const icp_pairs& p) const;
+
+  const icp_options& options_;
+  const cloud::cloud& reference_cloud_;
+  icp_points estimate_;
+  icp_points reference_;
+  tree tree_;
+};
+
+inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
+                                                    double max_distance) const {
+  std::vector<std::size_t> match(moved.size(), none);
+  for_each_chunk(moved.size(), 4096, options_.threads, {}, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      std::size_t index = 0;
+      double squared = 0;
+      tree_.knnSearch(moved[i].data(), 1, &index, &squared);
+      if (squared < max_distance * max_distance) match[i] = index;
+    }
+  });
+  return match;
+}
+
+inline icp_pairs icp_solver::pairs(const math::sim3& now, double max_distance) const {
+  std::vector<Eigen::Vector3d> moved;
+  moved.reserve(estimate_.position.size());
+  for (const Eigen::Vector3d& p : estimate_.position) moved.push_back(now * p);
+  const auto match = nearest(moved, max_distance);
+  icp_pairs found;
+  double squares = 0;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (match[i] == none) continue;
+    const Eigen::Vector3d& to = reference_.position[match[i]];
+    found.estimate.push_back(moved[i]);
+    found.reference.push_back(to);
+    if (options_.metric == icp_metric::plane) {
+      const std::size_t source = reference_.source[match[i]];
+      found.normal.push_back(reference_cloud_.normals[source].cast<double>());
+    }
+    squares += (moved[i] - to).squaredNorm();
+  }
+  const auto n = static_cast<double>(found.estimate.size());
+  found.fitness = n / static_cast<double>(moved.size());
+  found.rmse = n > 0 ? std::sqrt(squares / n) : 0;
+  return found;
+}
+
+/// Solves for a small turn, shift and (with scale) stretch that bring the estimate onto the planes.
+inline math::sim3 icp_solver::plane_step(const icp_pairs& p) const {
+  const int unknowns = options_.with_scale ? 7 : 6;
+  Eigen::MatrixXd normal_matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+  for (std::size_t i = 0; i < p.estimate.size(); ++i) {
+    const Eigen::Vector3d& x = p.estimate[i];
+    const Eigen::Vector3d& n = p.normal[i];
+    const double residual = n.dot(p.reference[i] - x);
+    Eigen::VectorXd row(unknowns);
+    row.head<3>() = x.cross(n);
+    row.segment<3>(3) = n;
+    if (options_.with_scale) row[6] = n.dot(x);
+    if (!row.allFinite()) continue;
+    normal_matrix += row * row.transpose();
+    right += row * residual;
+  }
+  const Eigen::VectorXd u = normal_matrix.ldlt().solve(right);
+  if (!u.allFinite()) throw undefined_error("align::icp: the planes do not hold the estimate");
+  const Eigen::Vector3d turn = u.head<3>();
+  return {options_.with_scale ? 1 + u[6] : 1, math::rotation_from(turn), u.segment<3>(3)};
+}
+
+inline math::sim3 icp_solver::step(const icp_pairs& p) const {
+  if (options_.metric == icp_metric::plane) return plane_step(p);
+  return umeyama(p.estimate, p.reference, {.scale = options_.with_scale});
+}
+
+inline icp_result icp_solver::run() {
+  const Eigen::Vector3d& origin = reference_cloud_.origin;
+  const math::sim3 to_local{1, Eigen::Matrix3d::Identity(), -origin};
+  math::sim3 now = to_local * options_.init * to_local.inverse();
+  icp_result result{};
+  for (const double distance : options_.max_distance) {
+    icp_pairs p = pairs(now, distance);
+    result.converged = false;
+    for (std::size_t i = 0; i < options_.max_iterations && !result.converged; ++i) {
+      if (p.estimate.empty()) {
+        throw undefined_error(
+            message("align::icp: no point of the estimate within ", distance, " of the reference"));
+      }
+      now = step(p) * now;
+      icp_pairs next = pairs(now, distance);
+      result.converged = std::abs(next.fitness - p.fitness) < options_.relative_change &&
+                         std::abs(next.rmse - p.rmse) < options_.relative_change;
+      p = std::move(next);
+      ++result.n_iterations;
+    }
+    result.fitness = p.fitness;
+    result.rmse = p.rmse;
+    result.n_pairs = p.estimate.size();
+  }
+  result.transform = to_local.inverse() * now * to_local;
+  return result;
+}
+
+inline void check_icp(const cloud::cloud& reference, const icp_options& options) {
+  if (options.max_distance.empty()) throw argument_error("align::icp: max_distance expected");
+  for (const double d : options.max_distance) {
+    if (!(d > 0)) throw argument_error(message("align::icp: max_distance > 0 expected, found ", d));
+  }
+  if (options.metric == icp_metric::plane && reference.normals.size() != reference.size()) {
+    throw argument_error("align::icp: metric plane expects a reference with normals");
+  }
+}
+
+}  // namespace detail
+
+inline icp_result icp(const cloud::cloud& estimate,
+                      const cloud::cloud& reference,
+                      const icp_options& options) {
+  detail::check_icp(reference, options);
+  return detail::icp_solver(estimate, reference, options).run();
 }
 
 }  // namespace aib::align
@@ -6021,47 +8541,357 @@ inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& opt
 
 }  // namespace aib::sample
 
-// aib/io/axes.hpp
+// aib/sample/unproject.hpp
 
-namespace aib::io {
+namespace aib::sample {
 
-/// The axis that points up in a file. Blender's OBJ and glTF exports are Y up by default, its PLY
-/// and STL exports Z up.
-enum class up_axis { z, y };
+/// What the numbers of a confidence map are, and thus what `min_confidence` is compared with.
+enum class confidence_rule {
+  raw,         ///< the number itself is above it (DA3, VGGT: never below 1)
+  sigmoid,     ///< 1 / (1 + exp(-number)) is above it (pi3 stores logits)
+  percentile,  ///< a share: that part of the valid pixels, the least confident, is left out
+};
 
-/// "z" or "y". Throws argument_error for another name.
-[[nodiscard]] inline up_axis parse_up_axis(std::string_view name) {
-  if (name == "z") return up_axis::z;
-  if (name == "y") return up_axis::y;
-  throw argument_error(message("up: \"z\" or \"y\" expected, found \"", name, "\""));
-}
+/// What a depth is.
+enum class depth_meaning {
+  planar,  ///< distance along the optical axis
+  range,   ///< distance from the camera centre
+};
+
+struct unproject_options {
+  raster::view<const float> confidence = {};  ///< none, or of the size of the map
+  std::optional<double> min_confidence = {};  ///< a pixel is kept strictly above it
+  confidence_rule rule = confidence_rule::raw;
+  std::size_t stride = 1;     ///< every stride-th column and row
+  double pixel_offset = 0.5;  ///< of a pixel's centre from its index: 0.5 as COLMAP, or 0
+  depth_meaning meaning = depth_meaning::planar;
+  raster::view<const raster::rgb> colors = {};  ///< none, or of the size of the map
+  unsigned threads = 0;                         ///< 0: all
+};
+
+/// Points of a depth map, and what became of its pixels.
+struct unprojected {
+  cloud::cloud points;   ///< row by row
+  std::size_t n_valid;   ///< pixels of the grid with a depth
+  std::size_t n_unsure;  ///< of those, left out for their confidence
+  std::size_t n_unseen;  ///< left out because the camera sees nothing there
+};
+
+/// The points that a depth map shows, in world frame.
+///
+/// depth              in the unit of the pose
+/// camera             any model; where its size differs from the map's, pixels are scaled to it
+/// world_from_camera  a depth map and a pose of a method's own scale give points of that scale:
+///                    align the points afterwards
+///
+/// The order of the points does not depend on the number of threads. Throws argument_error if the
+/// sizes differ, stride is 0, the pose is not finite or only one of confidence and min_confidence
+/// is given.
+[[nodiscard]] unprojected unproject(const depth::depth_map& map,
+                                    const math::camera& camera,
+                                    const math::rigid3& world_from_camera,
+                                    const unproject_options& options = {});
 
 namespace detail {
 
-/// (x, y, z) of a Y-up frame in the Z-up frame: (x, -z, y).
-template <class Scalar>
-Eigen::Matrix<Scalar, 3, 1> z_up_from_y_up(const Eigen::Matrix<Scalar, 3, 1>& v) {
-  return {v[0], -v[2], v[1]};
+inline void check(const depth::depth_map& map,
+                  const math::rigid3& pose,
+                  const unproject_options& options) {
+  const auto require = [&](bool holds, const auto&... what) {
+    if (!holds) throw argument_error(message("sample::unproject: ", what...));
+  };
+  const auto same_size = [&](std::string_view thing, const auto& view) {
+    require(!view.data || (view.width == map.values.width() && view.height == map.values.height()),
+            "the depth map is ", map.values.width(), "x", map.values.height(), ", the ", thing, " ",
+            view.width, "x", view.height);
+  };
+  same_size("confidence map", options.confidence);
+  same_size("picture", options.colors);
+  require(options.stride > 0, "stride >= 1 expected, found 0");
+  require(pose.is_finite(), "the pose is not finite");
+  require(options.min_confidence.has_value() == (options.confidence.data != nullptr),
+          "a confidence map and min_confidence go together, found one of them");
+}
+
+/// The confidence as stored that a pixel must exceed. Of a percentile: the quantile of the
+/// confidences of valid pixels.
+inline double confidence_threshold(const depth::depth_map& map, const unproject_options& options) {
+  const double least = *options.min_confidence;
+  if (options.rule == confidence_rule::raw) return least;
+  if (!(least >= 0 && least <= 1)) {
+    throw argument_error(
+        message("sample::unproject: min_confidence in [0, 1] expected, found ", least));
+  }
+  if (options.rule == confidence_rule::sigmoid) return std::log(least / (1 - least));
+  std::vector<float> of_valid;
+  for (std::size_t y = 0; y < map.values.height(); y += options.stride) {
+    for (std::size_t x = 0; x < map.values.width(); x += options.stride) {
+      if (depth::is_valid(map.values(x, y))) of_valid.push_back(options.confidence(x, y));
+    }
+  }
+  if (of_valid.empty() || least == 0) return -HUGE_VAL;
+  return stats::quantile_in_place<float>(of_valid, least, stats::quantile_rule::lower);
+}
+
+/// Unprojects rows of one map.
+class unprojector {
+ public:
+  unprojector(const depth::depth_map& map,
+              const math::camera& camera,
+              const math::rigid3& world_from_camera,
+              const unproject_options& options)
+      : map_(map.values), camera_(camera), pose_(world_from_camera), options_(options) {
+    if (options.confidence.data) threshold_ = confidence_threshold(map, options);
+    if (camera.width > 0 && camera.height > 0) {
+      scale_x_ = static_cast<double>(camera.width) / static_cast<double>(map_.width);
+      scale_y_ = static_cast<double>(camera.height) / static_cast<double>(map_.height);
+    }
+  }
+
+  /// Adds the points of a row to `to`, which are counted from `to.points.origin`.
+  void add_row(std::size_t y, unprojected& to) const {
+    for (std::size_t x = 0; x < map_.width; x += options_.stride) {
+      const float depth = map_(x, y);
+      if (!depth::is_valid(depth)) continue;
+      ++to.n_valid;
+      if (threshold_ && !(options_.confidence(x, y) > *threshold_)) {
+        ++to.n_unsure;
+      } else if (const auto p_in_camera = point(x, y, depth)) {
+        const Eigen::Vector3d p = pose_ * *p_in_camera - to.points.origin;
+        to.points.points.push_back(p.cast<float>());
+        if (options_.colors.data) to.points.colors.push_back(options_.colors(x, y));
+      } else {
+        ++to.n_unseen;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::optional<Eigen::Vector3d> point(std::size_t x,
+                                                     std::size_t y,
+                                                     double depth) const {
+    const Eigen::Vector2d pixel((static_cast<double>(x) + options_.pixel_offset) * scale_x_,
+                                (static_cast<double>(y) + options_.pixel_offset) * scale_y_);
+    const auto direction = math::unproject(camera_, pixel);
+    if (!direction) return std::nullopt;
+    if (options_.meaning == depth_meaning::range) return *direction * depth;
+    if (!(direction->z() > 0)) return std::nullopt;
+    return *direction * (depth / direction->z());
+  }
+
+  raster::view<const float> map_;
+  const math::camera& camera_;
+  const math::rigid3& pose_;
+  const unproject_options& options_;
+  std::optional<double> threshold_ = {};
+  double scale_x_ = 1;
+  double scale_y_ = 1;
+};
+
+inline unprojected append(unprojected a, const unprojected& b) {
+  const auto extend = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  extend(a.points.points, b.points.points);
+  extend(a.points.colors, b.points.colors);
+  a.n_valid += b.n_valid;
+  a.n_unsure += b.n_unsure;
+  a.n_unseen += b.n_unseen;
+  return a;
 }
 
 }  // namespace detail
 
-/// Turns a cloud so that z points up, with its normals.
-inline void turn_z_up(cloud::cloud& cloud, up_axis from) {
-  if (from == up_axis::z) return;
-  cloud.origin = detail::z_up_from_y_up(cloud.origin);
-  for (Eigen::Vector3f& p : cloud.points) p = detail::z_up_from_y_up(p);
-  for (Eigen::Vector3f& n : cloud.normals) n = detail::z_up_from_y_up(n);
+inline unprojected unproject(const depth::depth_map& map,
+                             const math::camera& camera,
+                             const math::rigid3& world_from_camera,
+                             const unproject_options& options) {
+  detail::check(map, world_from_camera, options);
+  const Eigen::Vector3d& centre = world_from_camera.translation;
+  unprojected nothing{};
+  nothing.points.origin = cloud::natural_origin(centre, centre);
+  if (map.values.empty()) return nothing;
+  const detail::unprojector rows(map, camera, world_from_camera, options);
+  const std::size_t n_rows = (map.values.height() + options.stride - 1) / options.stride;
+  const auto points_of = [&](const chunk& c) {
+    unprojected part = nothing;
+    for (std::size_t i = c.begin; i < c.end; ++i) rows.add_row(i * options.stride, part);
+    return part;
+  };
+  return reduce_chunks(n_rows, 32, options.threads, {}, nothing, points_of, detail::append);
 }
 
-/// Turns a mesh so that z points up.
-inline void turn_z_up(mesh::mesh& mesh, up_axis from) {
-  if (from == up_axis::z) return;
-  mesh.origin = detail::z_up_from_y_up(mesh.origin);
-  for (Eigen::Vector3f& v : mesh.vertices) v = detail::z_up_from_y_up(v);
+}  // namespace aib::sample
+
+// aib/sample/voxel.hpp
+
+namespace aib::sample {
+
+/// Where the lattice of voxels begins.
+enum class voxel_anchor {
+  world,   ///< at the origin of the world: one more point moves no other
+  open3d,  ///< half a voxel below the cloud's own corner, as Open3D's voxel_down_sample
+};
+
+/// The one point that stands for a voxel.
+enum class voxel_pick {
+  mean,     ///< mean of its points
+  centre,   ///< centre of the voxel
+  nearest,  ///< that of its points which is nearest to their mean
+};
+
+struct voxel_options {
+  double size = 0;  ///< edge of a voxel, in the unit of the cloud
+  voxel_anchor anchor = voxel_anchor::world;
+  voxel_pick pick = voxel_pick::mean;
+  unsigned threads = 0;  ///< 0: all
+};
+
+/// One point for each voxel that has any, in the order of the lattice. Normal, colour and label are
+/// those of the voxel's point nearest to the chosen one. Points that are not finite are left out.
+///
+/// The cell of a point is calculated in double. The same for any number of threads.
+/// Throws argument_error if size is not positive or far too small for the cloud.
+[[nodiscard]] cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options);
+
+namespace detail {
+
+/// The lattice: which cell a point lies in, counted from the lowest cell of the cloud.
+class voxel_lattice {
+ public:
+  voxel_lattice(const cloud::cloud& points, const voxel_options& options)
+      : points_(points), size_(options.size) {
+    if (!(options.size > 0 && std::isfinite(options.size))) {
+      throw argument_error(message("sample::voxel: size > 0 expected, found ", options.size));
+    }
+    const cloud::box box = cloud::bounds(points);
+    anchor_.setZero();
+    if (options.anchor == voxel_anchor::open3d) anchor_ = box.low.array() - size_ * 0.5;
+    if (box.empty()) return;
+    const Eigen::Vector3d low = cell_of(box.low), high = cell_of(box.high);
+    first_ = low;
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(low[k]) < 0x1p52 && std::abs(high[k]) < 0x1p52 && high[k] - low[k] < 0x1p31)) {
+        throw argument_error(
+            message("sample::voxel: size ", size_, " is too small for a cloud of ", box.size()[k]));
+      }
+      const auto cells = static_cast<std::uint64_t>(high[k] - low[k]) + 1;
+      bits_[static_cast<std::size_t>(k)] = static_cast<int>(std::bit_width(cells));
+    }
+  }
+
+  /// Bits that the cells take on an axis.
+  [[nodiscard]] int bits(std::size_t axis) const { return bits_[axis]; }
+
+  [[nodiscard]] std::array<std::uint64_t, 3> cell(std::size_t i) const {
+    const Eigen::Vector3d c = cell_of(points_.position(i)) - first_;
+    return {static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
+            static_cast<std::uint64_t>(c.z())};
+  }
+
+  /// Centre of the cell of point i.
+  [[nodiscard]] Eigen::Vector3d centre(std::size_t i) const {
+    const Eigen::Vector3d c = cell_of(points_.position(i));
+    return anchor_.array() + (c.array() + 0.5) * size_;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d cell_of(const Eigen::Vector3d& p) const {
+    return ((p - anchor_) / size_).array().floor();
+  }
+
+  const cloud::cloud& points_;
+  double size_;
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  std::array<int, 3> bits_{};
+};
+
+/// Finite points sorted by their cell (z, then y, then x), then index: one radix sort an axis, the
+/// least important axis first, each stable.
+inline search::buffer<std::uint64_t> sort_by_cell(const cloud::cloud& points,
+                                                  const voxel_lattice& lattice,
+                                                  unsigned threads) {
+  const int index_bits = std::max(1, static_cast<int>(std::bit_width(points.size())));
+  const std::uint64_t mask = (std::uint64_t{1} << index_bits) - 1;
+  std::vector<std::uint64_t> finite;
+  finite.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (cloud::is_finite(points.points[i])) finite.push_back(i);
+  }
+  search::buffer<std::uint64_t> words(finite.size());
+  std::copy(finite.begin(), finite.end(), words.data());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for_each_chunk(words.size(), 1 << 16, threads, {}, [&](const chunk& c) {
+      for (std::size_t w = c.begin; w < c.end; ++w) {
+        const std::uint64_t i = words[w] & mask;
+        words[w] = lattice.cell(i)[axis] << index_bits | i;
+      }
+    });
+    search::radix_sort(words, {index_bits, index_bits + lattice.bits(axis)}, threads);
+  }
+  for (std::size_t w = 0; w < words.size(); ++w) words[w] &= mask;
+  return words;
 }
 
-}  // namespace aib::io
+/// Where each voxel's points begin in the sorted list, and at the end its length.
+inline std::vector<std::size_t> voxel_starts(const search::buffer<std::uint64_t>& sorted,
+                                             const voxel_lattice& lattice) {
+  std::vector<std::size_t> starts;
+  std::array<std::uint64_t, 3> last{};
+  for (std::size_t w = 0; w < sorted.size(); ++w) {
+    const auto cell = lattice.cell(sorted[w]);
+    if (w == 0 || cell != last) starts.push_back(w);
+    last = cell;
+  }
+  starts.push_back(sorted.size());
+  return starts;
+}
+
+/// Index of the point nearest to a position, the first among equals.
+inline std::size_t nearest_of(const cloud::cloud& points,
+                              std::span<const std::uint64_t> index,
+                              const Eigen::Vector3d& to) {
+  return *std::min_element(index.begin(), index.end(), [&](std::uint64_t a, std::uint64_t b) {
+    return (points.position(a) - to).squaredNorm() < (points.position(b) - to).squaredNorm();
+  });
+}
+
+/// Mean position of some points.
+inline Eigen::Vector3d mean_of(const cloud::cloud& points, std::span<const std::uint64_t> index) {
+  Eigen::Vector3d sum(0, 0, 0);
+  for (const std::uint64_t i : index) sum += points.points[i].cast<double>();
+  return points.origin + sum / static_cast<double>(index.size());
+}
+
+}  // namespace detail
+
+inline cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options) {
+  const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
+  const detail::voxel_lattice lattice(points, options);
+  const auto sorted = detail::sort_by_cell(points, lattice, threads);
+  const auto starts = detail::voxel_starts(sorted, lattice);
+  const std::size_t n = starts.size() - 1;
+  std::vector<std::size_t> source(n);
+  std::vector<Eigen::Vector3d> position(n);
+  for_each_chunk(n, 4096, threads, {}, [&](const chunk& c) {
+    for (std::size_t v = c.begin; v < c.end; ++v) {
+      const auto members = sorted.span().subspan(starts[v], starts[v + 1] - starts[v]);
+      const bool centre = options.pick == voxel_pick::centre;
+      position[v] = centre ? lattice.centre(members.front()) : detail::mean_of(points, members);
+      source[v] = detail::nearest_of(points, members, position[v]);
+    }
+  });
+  cloud::cloud picked = cloud::select(points, source);
+  if (options.pick == voxel_pick::nearest) return picked;
+  cloud::placed_points placed =
+      cloud::place(n, [&](std::size_t v) -> const Eigen::Vector3d& { return position[v]; });
+  picked.origin = placed.origin;
+  picked.points = std::move(placed.points);
+  return picked;
+}
+
+}  // namespace aib::sample
 
 // aib/io/bytes.hpp
 
@@ -6278,6 +9108,1223 @@ inline void write_file(const std::filesystem::path& path, std::string_view conte
   output_file file(path);
   file.write(content);
   file.commit();
+}
+
+}  // namespace aib::io
+
+// aib/io/half.hpp
+
+namespace aib::io {
+
+/// The value of an IEEE 754 half-precision number from its bits; exact.
+[[nodiscard]] constexpr float float_from_half(std::uint16_t bits) {
+  const std::uint32_t sign = std::uint32_t{bits & 0x8000u} << 16;
+  const std::uint32_t exponent = (bits >> 10) & 0x1fu;
+  const std::uint32_t mantissa = bits & 0x3ffu;
+  if (exponent == 0) {  // zero and subnormals: mantissa * 2^-24
+    const float magnitude = static_cast<float>(mantissa) * 0x1p-24f;
+    return sign != 0 ? -magnitude : magnitude;
+  }
+  const std::uint32_t wide = exponent == 31 ? 255 : exponent + (127 - 15);
+  return std::bit_cast<float>(sign | (wide << 23) | (mantissa << 13));
+}
+
+}  // namespace aib::io
+
+// aib/io/text.hpp
+
+namespace aib::io {
+
+/// The text without blanks and line ends at both sides.
+[[nodiscard]] inline std::string_view trim(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// The fields of a line: parted by `separator`, or by runs of blanks where it is 0. Fields are
+/// trimmed.
+inline void split(std::string_view line,
+                  std::vector<std::string_view>& fields,
+                  char separator = 0) {
+  fields.clear();
+  if (separator == 0) {
+    constexpr std::string_view blank = " \t\r\n\v\f";
+    for (std::size_t at = line.find_first_not_of(blank); at != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(blank, at), line.size());
+      fields.push_back(line.substr(at, end - at));
+      at = line.find_first_not_of(blank, end);
+    }
+    return;
+  }
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trim(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// The number that the whole text is, in no locale; nothing where it is not one. "nan" and "inf"
+/// are numbers, a leading + is allowed.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number value{};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
+  if (code != std::errc()) return std::nullopt;
+  return value;
+}
+
+/// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
+/// skipped.
+class line_reader {
+ public:
+  line_reader(std::string_view text, std::filesystem::path path)
+      : rest_(text), path_(std::move(path)) {
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  }
+
+  /// Moves to the next line; false after the last.
+  bool next() {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line_ = rest_.substr(0, end);
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++number_;
+    return true;
+  }
+
+  /// Moves to the next line that is neither blank nor a comment ('#').
+  bool next_content() {
+    while (next()) {
+      const std::string_view content = trim(line_);
+      if (!content.empty() && content.front() != '#') return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::string_view line() const { return line_; }
+  [[nodiscard]] std::size_t number() const { return number_; }
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, at_line{number_}, what);
+  }
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  std::size_t number_ = 0;
+  std::filesystem::path path_;
+};
+
+}  // namespace aib::io
+
+// aib/io/npy.hpp
+
+namespace aib::io {
+
+/// Element types of arrays, with NumPy's names: kind and bytes.
+enum class dtype { b1, i1, i2, i4, i8, u1, u2, u4, u8, f2, f4, f8 };
+
+/// "f4" and the like.
+[[nodiscard]] std::string_view name(dtype type);
+
+/// Bytes of an element.
+[[nodiscard]] std::size_t size_of(dtype type);
+
+/// The type that holds T: bool, the integers and floats of 1 to 8 bytes.
+template <class T>
+[[nodiscard]] constexpr dtype dtype_of();
+
+/// A dense array of numbers of any shape. The elements lie in C order (last index fastest) and in
+/// the machine's byte order, whatever the file had.
+struct array {
+  dtype type = dtype::f8;
+  std::vector<std::size_t> shape = {};  ///< empty: a single number
+  std::string bytes = {};               ///< size() * size_of(type)
+
+  [[nodiscard]] std::size_t size() const;
+  /// The sub-array at an index of the first axis: `a[index]`. Throws argument_error if there is
+  /// none.
+  [[nodiscard]] array at(std::size_t index) const;
+  /// Element `i` in C order, as a double. Integers beyond 2^53 are rounded.
+  [[nodiscard]] double operator[](std::size_t i) const;
+  /// All elements in C order, as float or double.
+  template <std::floating_point Scalar>
+  [[nodiscard]] std::vector<Scalar> values() const;
+};
+
+/// The shape as NumPy prints it: "(8, 5)", "(3,)", "()".
+[[nodiscard]] std::string text_of_shape(std::span<const std::size_t> shape);
+
+/// An array of the given shape over a copy of `values`. Throws argument_error where their number
+/// is another.
+template <class T>
+[[nodiscard]] array make_array(std::vector<std::size_t> shape, std::span<const T> values);
+
+/// An NPY file: versions 1 to 3, both byte orders, C and Fortran order, bool, integers and floats
+/// of 1 to 8 bytes. Bytes after the elements are ignored, as NumPy does.
+///
+/// Throws format_error for pickled objects, structures, complex numbers, strings and long doubles,
+/// and where the file is shorter than its shape.
+/// Source: NumPy Enhancement Proposal 1, and numpy.lib.format of NumPy 2.
+[[nodiscard]] array read_npy(const std::filesystem::path& path);
+
+/// The same from bytes in memory; `path` names them in errors.
+[[nodiscard]] array parse_npy(std::string bytes, const std::filesystem::path& path);
+
+/// What NumPy writes for an array: version 1, C order, little endian, elements from a multiple of
+/// 64 bytes on.
+[[nodiscard]] std::string npy_bytes(const array& a);
+
+void write_npy(const std::filesystem::path& path, const array& a);
+
+namespace detail {
+
+struct dtype_info {
+  std::string_view name;
+  std::size_t bytes;
+};
+
+inline constexpr std::array<dtype_info, 12> dtypes{{{"b1", 1},
+                                                    {"i1", 1},
+                                                    {"i2", 2},
+                                                    {"i4", 4},
+                                                    {"i8", 8},
+                                                    {"u1", 1},
+                                                    {"u2", 2},
+                                                    {"u4", 4},
+                                                    {"u8", 8},
+                                                    {"f2", 2},
+                                                    {"f4", 4},
+                                                    {"f8", 8}}};
+
+/// What the header of an NPY file says.
+struct npy_header {
+  dtype type = dtype::f8;
+  std::endian order = std::endian::little;
+  bool fortran = false;
+  std::vector<std::size_t> shape;
+  std::size_t begin = 0;  ///< byte of the first element
+};
+
+/// Reads the header's Python dictionary: no more of the language than NumPy writes there.
+class npy_dictionary {
+ public:
+  npy_dictionary(std::string_view text, std::size_t at_byte, const std::filesystem::path& path)
+      : text_(text), offset_(at_byte), path_(path) {}
+
+  npy_header read() {
+    expect('{');
+    while (!accept('}')) {
+      const std::string_view key = quoted();
+      expect(':');
+      value(key);
+      if (!accept(',') && peek() != '}') fail("',' or '}' expected");
+    }
+    skip_blanks();
+    if (at_ < text_.size()) fail("text after the dictionary");
+    if (!seen_type_ || !seen_order_ || !seen_shape_)
+      fail("the keys descr, fortran_order and shape expected");
+    return std::move(header_);
+  }
+
+ private:
+  void value(std::string_view key) {
+    if (key == "descr") {
+      once(seen_type_, key);
+      type();
+    } else if (key == "fortran_order") {
+      once(seen_order_, key);
+      header_.fortran = boolean();
+    } else if (key == "shape") {
+      once(seen_shape_, key);
+      shape();
+    } else {
+      fail(message("unknown key '", key, "'"));
+    }
+  }
+
+  void once(bool& seen, std::string_view key) const {
+    if (std::exchange(seen, true)) fail(message("the key ", key, " comes twice"));
+  }
+
+  void type() {
+    if (peek() == '[') fail("structured elements are not supported; save the fields apart");
+    const std::string_view descr = quoted();
+    const std::string_view type = descr.size() > 1 ? descr.substr(1) : descr;
+    if (type.starts_with('O'))
+      fail("the elements are pickled Python objects, which are never loaded");
+    const auto known = std::find_if(dtypes.begin(), dtypes.end(),
+                                    [&](const dtype_info& info) { return info.name == type; });
+    const char order = descr.empty() ? '\0' : descr.front();
+    const bool ordered = order == '<' || order == '>' || order == '=';
+    if (known == dtypes.end() || !(ordered || (order == '|' && known->bytes == 1))) {
+      fail(message("element type '", descr,
+                   "' is not supported; bool, integers and floats of 1 to 8 bytes are"));
+    }
+    header_.type = static_cast<dtype>(known - dtypes.begin());
+    if (order == '>') header_.order = std::endian::big;
+    if (order == '=') header_.order = std::endian::native;
+  }
+
+  bool boolean() {
+    if (accept_word("True")) return true;
+    if (accept_word("False")) return false;
+    fail("fortran_order: True or False expected");
+  }
+
+  void shape() {
+    constexpr std::size_t max_axes = 32;
+    expect('(');
+    while (!accept(')')) {
+      skip_blanks();
+      const std::size_t end = std::min(text_.find_first_not_of("0123456789", at_), text_.size());
+      const auto extent = parse<std::size_t>(text_.substr(at_, end - at_));
+      if (!extent) fail("shape: a whole number expected");
+      at_ = end;
+      accept('L');  // Python 2 wrote long integers so
+      header_.shape.push_back(*extent);
+      if (header_.shape.size() > max_axes) fail("shape: more than 32 axes");
+      if (!accept(',') && peek() != ')') fail("shape: ',' or ')' expected");
+    }
+  }
+
+  std::string_view quoted() {
+    const char quote = peek();
+    if (quote != '\'' && quote != '"') fail("a quoted name expected");
+    const std::size_t end = text_.find(quote, at_ + 1);
+    if (end == std::string_view::npos) fail("a quoted name without an end");
+    const std::string_view content = text_.substr(at_ + 1, end - at_ - 1);
+    at_ = end + 1;
+    return content;
+  }
+
+  void skip_blanks() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
+  char peek() {
+    skip_blanks();
+    return at_ < text_.size() ? text_[at_] : '\0';
+  }
+  bool accept(char c) {
+    if (peek() != c || at_ == text_.size()) return false;
+    ++at_;
+    return true;
+  }
+  bool accept_word(std::string_view word) {
+    skip_blanks();
+    if (!text_.substr(at_).starts_with(word)) return false;
+    at_ += word.size();
+    return true;
+  }
+  void expect(char c) {
+    if (!accept(c)) fail(message("'", c, "' expected"));
+  }
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, at_byte{offset_ + at_}, message("npy: header: ", what));
+  }
+
+  std::string_view text_;
+  std::size_t offset_;
+  const std::filesystem::path& path_;
+  std::size_t at_ = 0;
+  npy_header header_;
+  bool seen_type_ = false;
+  bool seen_order_ = false;
+  bool seen_shape_ = false;
+};
+
+/// Number of elements; nothing where it does not fit in memory's arithmetic.
+inline std::optional<std::size_t> element_count(std::span<const std::size_t> shape) {
+  constexpr std::size_t limit = std::numeric_limits<std::size_t>::max() / 16;
+  std::size_t count = 1;
+  bool empty = false;
+  for (const std::size_t extent : shape) {
+    empty |= extent == 0;
+    if (extent > limit / count) return std::nullopt;
+    count *= std::max<std::size_t>(extent, 1);
+  }
+  return empty ? 0 : count;
+}
+
+/// The bytes before the header's text: magic, version and its length.
+struct npy_preamble {
+  std::size_t text_begin;
+  std::size_t text_size;
+};
+
+inline npy_preamble read_npy_preamble(std::string_view bytes, const std::filesystem::path& path) {
+  byte_reader in(bytes, path);
+  if (in.take(std::min<std::size_t>(6, bytes.size()), "npy: magic") != "\x93NUMPY")
+    throw format_error(path, at_byte{0}, "npy: not an NPY file: it does not begin with \\x93NUMPY");
+  const auto version = in.read<std::uint8_t>("npy: version");
+  in.read<std::uint8_t>("npy: version");
+  if (version < 1 || version > 3)
+    in.fail(message("npy: version 1, 2 or 3 expected, found ", unsigned{version}));
+  const std::size_t size = version == 1 ? in.read<std::uint16_t>("npy: header length")
+                                        : in.read<std::uint32_t>("npy: header length");
+  return {in.position(), size};
+}
+
+/// The header from the first bytes of a file that holds `file_size`.
+/// Refuses a shape that the file cannot hold.
+inline npy_header read_npy_header(std::string_view bytes,
+                                  std::uint64_t file_size,
+                                  const std::filesystem::path& path) {
+  const npy_preamble preamble = read_npy_preamble(bytes, path);
+  byte_reader in(bytes, path);
+  in.take(preamble.text_begin, "npy: magic");
+  const std::string_view text = in.take(preamble.text_size, "npy: header");
+  npy_header header = npy_dictionary(text, preamble.text_begin, path).read();
+  header.begin = in.position();
+  const std::uint64_t left = file_size - header.begin;
+  const auto count = element_count(header.shape);
+  if (!count || *count > left / size_of(header.type)) {
+    in.fail(message("npy: ", text_of_shape(header.shape), " elements of type ", name(header.type),
+                    " do not fit in the ", left, " bytes left"));
+  }
+  return header;
+}
+
+inline void reverse_elements(std::string& bytes, std::size_t element) {
+  for (std::size_t i = 0; i + element <= bytes.size(); i += element)
+    std::reverse(bytes.data() + i, bytes.data() + i + element);
+}
+
+/// The elements of a Fortran-ordered array in C order.
+inline std::string c_ordered(const std::string& bytes,
+                             std::span<const std::size_t> shape,
+                             std::size_t element) {
+  std::vector<std::size_t> stride(shape.size());
+  std::size_t step = element;
+  for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+    stride[axis] = step;
+    step *= shape[axis];
+  }
+  std::string out(bytes.size(), '\0');
+  std::vector<std::size_t> index(shape.size(), 0);
+  std::size_t from = 0;
+  for (std::size_t to = 0; to < out.size(); to += element) {
+    std::memcpy(out.data() + to, bytes.data() + from, element);
+    for (std::size_t axis = shape.size(); axis-- > 0;) {
+      from += stride[axis];
+      if (++index[axis] < shape[axis]) break;
+      from -= stride[axis] * shape[axis];
+      index[axis] = 0;
+    }
+  }
+  return out;
+}
+
+inline array make_array(npy_header header, std::string bytes) {
+  const std::size_t element = size_of(header.type);
+  if (header.order != std::endian::native) reverse_elements(bytes, element);
+  if (header.fortran && header.shape.size() > 1) bytes = c_ordered(bytes, header.shape, element);
+  return {header.type, std::move(header.shape), std::move(bytes)};
+}
+
+template <class T>
+double load_native(const char* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return static_cast<double>(value);
+}
+
+inline double load_half(const char* from) {
+  std::uint16_t bits;
+  std::memcpy(&bits, from, sizeof bits);
+  return static_cast<double>(float_from_half(bits));
+}
+
+inline double load_boolean(const char* from) { return *from != 0 ? 1 : 0; }
+
+/// The function that reads an element of a type.
+inline double (*loader(dtype type))(const char*) {
+  switch (type) {
+    case dtype::b1:
+      return load_boolean;
+    case dtype::i1:
+      return load_native<std::int8_t>;
+    case dtype::i2:
+      return load_native<std::int16_t>;
+    case dtype::i4:
+      return load_native<std::int32_t>;
+    case dtype::i8:
+      return load_native<std::int64_t>;
+    case dtype::u1:
+      return load_native<std::uint8_t>;
+    case dtype::u2:
+      return load_native<std::uint16_t>;
+    case dtype::u4:
+      return load_native<std::uint32_t>;
+    case dtype::u8:
+      return load_native<std::uint64_t>;
+    case dtype::f2:
+      return load_half;
+    case dtype::f4:
+      return load_native<float>;
+    case dtype::f8:
+      break;
+  }
+  return load_native<double>;
+}
+
+}  // namespace detail
+
+inline std::string_view name(dtype type) {
+  return detail::dtypes[static_cast<std::size_t>(type)].name;
+}
+
+inline std::size_t size_of(dtype type) {
+  return detail::dtypes[static_cast<std::size_t>(type)].bytes;
+}
+
+template <class T>
+constexpr dtype dtype_of() {
+  static_assert(std::is_arithmetic_v<T> && sizeof(T) <= 8, "no element type of arrays");
+  if constexpr (std::is_same_v<T, bool>) return dtype::b1;
+  if constexpr (std::is_floating_point_v<T>) return sizeof(T) == 4 ? dtype::f4 : dtype::f8;
+  const int power = std::countr_zero(sizeof(T));
+  return static_cast<dtype>(static_cast<int>(std::is_signed_v<T> ? dtype::i1 : dtype::u1) + power);
+}
+
+inline std::size_t array::size() const { return detail::element_count(shape).value_or(0); }
+
+inline array array::at(std::size_t index) const {
+  if (shape.empty() || index >= shape.front()) {
+    throw argument_error(
+        message("array: no element ", index, " on the first axis of ", text_of_shape(shape)));
+  }
+  const std::size_t n = bytes.size() / shape.front();
+  return {type, {shape.begin() + 1, shape.end()}, bytes.substr(index * n, n)};
+}
+
+inline double array::operator[](std::size_t i) const {
+  return detail::loader(type)(bytes.data() + i * size_of(type));
+}
+
+template <std::floating_point Scalar>
+std::vector<Scalar> array::values() const {
+  std::vector<Scalar> out(size());
+  if (type == dtype_of<Scalar>()) {
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
+    return out;
+  }
+  const auto load = detail::loader(type);
+  const std::size_t element = size_of(type);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<Scalar>(load(bytes.data() + i * element));
+  return out;
+}
+
+inline std::string text_of_shape(std::span<const std::size_t> shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    text += message(shape[i], i + 1 < shape.size() ? ", " : "");
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+template <class T>
+array make_array(std::vector<std::size_t> shape, std::span<const T> values) {
+  array a{dtype_of<std::remove_const_t<T>>(), std::move(shape), {}};
+  if (detail::element_count(a.shape) != values.size()) {
+    throw argument_error(
+        message("make_array: ", values.size(), " values for shape ", text_of_shape(a.shape)));
+  }
+  a.bytes.assign(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  return a;
+}
+
+inline array read_npy(const std::filesystem::path& path) {
+  const input_file file(path);
+  const auto part = [&](std::uint64_t offset, std::uint64_t n) {
+    std::string bytes(static_cast<std::size_t>(std::min(n, file.size() - offset)), '\0');
+    file.read_at(offset, bytes.data(), bytes.size());
+    return bytes;
+  };
+  const std::string start = part(0, 12);
+  const detail::npy_preamble preamble = detail::read_npy_preamble(start, path);
+  const std::string text = part(0, preamble.text_begin + preamble.text_size);
+  detail::npy_header header = detail::read_npy_header(text, file.size(), path);
+  std::string elements =
+      part(header.begin, *detail::element_count(header.shape) * size_of(header.type));
+  return detail::make_array(std::move(header), std::move(elements));
+}
+
+inline array parse_npy(std::string bytes, const std::filesystem::path& path) {
+  detail::npy_header header = detail::read_npy_header(bytes, bytes.size(), path);
+  bytes.erase(0, header.begin);
+  bytes.resize(*detail::element_count(header.shape) * size_of(header.type));
+  return detail::make_array(std::move(header), std::move(bytes));
+}
+
+inline std::string npy_bytes(const array& a) {
+  std::string text = message("{'descr': '", size_of(a.type) == 1 ? '|' : '<', name(a.type),
+                             "', 'fortran_order': False, 'shape': ", text_of_shape(a.shape), ", }");
+  text.append(63 - (10 + text.size()) % 64, ' ');
+  text += '\n';
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  store(bytes, static_cast<std::uint16_t>(text.size()));
+  std::string elements = a.bytes;
+  if (std::endian::native != std::endian::little)
+    detail::reverse_elements(elements, size_of(a.type));
+  return bytes + text + elements;
+}
+
+inline void write_npy(const std::filesystem::path& path, const array& a) {
+  write_file(path, npy_bytes(a));
+}
+
+}  // namespace aib::io
+
+// aib/io/positions.hpp
+
+namespace aib::io {
+
+/// Positions as clouds and meshes keep them: `origin + points[i]`.
+struct float_positions {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> points = {};
+};
+
+/// Double positions as floats from the natural origin of their finite ones.
+[[nodiscard]] inline float_positions to_floats(std::span<const Eigen::Vector3d> positions) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinite);
+  Eigen::Vector3d high = -low;
+  for (const Eigen::Vector3d& p : positions) {
+    if (!p.allFinite()) continue;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  float_positions result;
+  if (low[0] <= high[0]) result.origin = cloud::natural_origin(low, high);
+  result.points.reserve(positions.size());
+  for (const Eigen::Vector3d& p : positions)
+    result.points.emplace_back((p - result.origin).cast<float>());
+  return result;
+}
+
+/// How many points have a coordinate that is NaN or infinite.
+[[nodiscard]] inline std::size_t count_non_finite(std::span<const Eigen::Vector3f> points) {
+  // All exponent bits set: looked for in one flat loop without branches, since most files have
+  // none.
+  const float* flat = points.empty() ? nullptr : points.front().data();
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < 3 * points.size(); ++i)
+    any |= (std::bit_cast<std::uint32_t>(flat[i]) & 0x7f800000u) == 0x7f800000u ? 1u : 0u;
+  if (any == 0) return 0;
+  return static_cast<std::size_t>(std::count_if(
+      points.begin(), points.end(), [](const Eigen::Vector3f& p) { return !p.allFinite(); }));
+}
+
+/// The sentence that a reader leaves about non-finite points; nothing where all are finite.
+[[nodiscard]] inline std::optional<std::string> non_finite_warning(
+    std::span<const Eigen::Vector3f> points, std::string_view name) {
+  const std::size_t n = count_non_finite(points);
+  if (n == 0) return std::nullopt;
+  return message(n, " of ", points.size(), " ", name, " are not finite");
+}
+
+}  // namespace aib::io
+
+// aib/io/npz.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+#include <zlib.h>
+
+namespace aib::io {
+
+struct npz_options {
+  /// A member that inflates to more than `max_ratio` times its stored size is refused where it
+  /// needs more than `max_bytes`: arrays hardly compress so well, bombs do.
+  double max_ratio = 100;
+  std::uint64_t max_bytes = std::uint64_t{1} << 30;
+};
+
+/// What an array is, without its elements.
+struct array_info {
+  dtype type = dtype::f8;
+  std::vector<std::size_t> shape = {};
+};
+
+/// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
+/// come from the central directory, contents are checked against their CRC-32. Members are read
+/// when asked for.
+///
+/// Needs zlib.
+/// Source: PKWARE, APPNOTE.TXT 6.3.10; numpy.savez.
+class npz_file {
+ public:
+  /// Throws io_error where the file cannot be opened, format_error where it is not a zip.
+  explicit npz_file(const std::filesystem::path& path, const npz_options& options = {});
+
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+
+  /// Names of the arrays, without ".npy", in the order of the file.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
+
+  /// Reads an array. Throws argument_error where there is none of that name, format_error where it
+  /// is damaged, encrypted, of another compression, or pickled.
+  [[nodiscard]] array read(std::string_view name) const;
+
+  /// Shape and type from the array's header alone.
+  /// Throws as read does.
+  [[nodiscard]] array_info read_header(std::string_view name) const;
+
+  /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
+  [[nodiscard]] bool is_unreadable(std::string_view name) const;
+
+ private:
+  struct member {
+    std::string name;
+    std::uint64_t offset = 0;  ///< of the local header
+    std::uint64_t packed = 0;
+    std::uint64_t size = 0;
+    std::uint32_t crc = 0;
+    std::uint16_t method = 0;
+    bool encrypted = false;
+  };
+  struct directory {
+    std::uint64_t offset;
+    std::uint64_t bytes;
+    std::uint64_t members;
+  };
+
+  [[nodiscard]] std::string part(std::uint64_t offset, std::uint64_t n) const;
+  [[nodiscard]] directory find_directory() const;
+  [[nodiscard]] directory find_directory64(std::uint64_t end) const;
+  [[nodiscard]] static member read_entry(byte_reader& in);
+  static void read_zip64(std::string_view extra,
+                         member& m,
+                         std::uint32_t packed,
+                         std::uint32_t size,
+                         std::uint32_t offset,
+                         byte_reader& in);
+  [[nodiscard]] const member* find(std::string_view name) const;
+  [[nodiscard]] const member& get(std::string_view name) const;
+  [[nodiscard]] std::uint64_t data_offset(const member& m) const;
+  /// The first `n` bytes of a member's content.
+  [[nodiscard]] std::string content(const member& m, std::uint64_t n) const;
+  [[nodiscard]] std::string inflated(const member& m, std::uint64_t n) const;
+  [[noreturn]] void fail(const member& m, std::string_view what) const;
+
+  input_file file_;
+  npz_options options_;
+  std::vector<member> members_;
+};
+
+/// All arrays of an NPZ file by name are too much at once as a rule; this reads one.
+[[nodiscard]] inline array read_npz(const std::filesystem::path& path, std::string_view name) {
+  return npz_file(path).read(name);
+}
+
+namespace detail {
+
+inline constexpr std::uint32_t zip_local = 0x04034b50;
+inline constexpr std::uint32_t zip_central = 0x02014b50;
+inline constexpr std::uint32_t zip_end = 0x06054b50;
+inline constexpr std::uint32_t zip64_end = 0x06064b50;
+inline constexpr std::uint32_t zip64_locator = 0x07064b50;
+inline constexpr std::uint32_t in_zip64 = 0xffffffff;  ///< the true number is in the extra field
+
+/// Inflates raw deflate data block by block.
+class deflate_stream {
+ public:
+  deflate_stream() { ready_ = ::inflateInit2(&stream_, -MAX_WBITS) == Z_OK; }
+  deflate_stream(const deflate_stream&) = delete;
+  deflate_stream& operator=(const deflate_stream&) = delete;
+  ~deflate_stream() { ::inflateEnd(&stream_); }
+
+  void input(std::string_view packed) {
+    stream_.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
+    stream_.avail_in = static_cast<uInt>(packed.size());
+  }
+  /// Fills `out` from `from` on as far as the input goes; false where the data is damaged.
+  bool fill(std::string& out, std::size_t& from) {
+    while (ready_ && !ended_ && from < out.size()) {
+      const std::size_t room = std::min<std::size_t>(out.size() - from, 1u << 30);
+      stream_.next_out = reinterpret_cast<Bytef*>(out.data() + from);
+      stream_.avail_out = static_cast<uInt>(room);
+      const int code = ::inflate(&stream_, Z_NO_FLUSH);
+      from += room - stream_.avail_out;
+      ended_ = code == Z_STREAM_END;
+      if (code == Z_BUF_ERROR || (code == Z_OK && stream_.avail_in == 0)) return true;
+      if (code != Z_OK && code != Z_STREAM_END) return false;
+    }
+    return ready_;
+  }
+
+ private:
+  z_stream stream_ = {};
+  bool ready_ = false;
+  bool ended_ = false;
+};
+
+inline std::uint32_t crc32_of(std::string_view bytes) {
+  uLong crc = ::crc32(0, nullptr, 0);
+  while (!bytes.empty()) {
+    const std::size_t n = std::min<std::size_t>(bytes.size(), 1u << 30);
+    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(n));
+    bytes.remove_prefix(n);
+  }
+  return static_cast<std::uint32_t>(crc);
+}
+
+}  // namespace detail
+
+inline npz_file::npz_file(const std::filesystem::path& path, const npz_options& options)
+    : file_(path), options_(options) {
+  const directory d = find_directory();
+  const std::string bytes = part(d.offset, d.bytes);
+  byte_reader in(bytes, path);
+  constexpr std::size_t entry_bytes = 46;
+  if (d.members > bytes.size() / entry_bytes)
+    throw format_error(path, message("npz: ", d.members, " members do not fit in the directory"));
+  for (std::uint64_t i = 0; i < d.members; ++i) {
+    member m = read_entry(in);
+    if (!m.name.ends_with(".npy")) continue;
+    m.name.resize(m.name.size() - 4);
+    members_.push_back(std::move(m));
+  }
+}
+
+inline std::vector<std::string> npz_file::names() const {
+  std::vector<std::string> names;
+  for (const member& m : members_) names.push_back(m.name);
+  return names;
+}
+
+inline array npz_file::read(std::string_view name) const {
+  const member& m = get(name);
+  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
+  std::string bytes = content(m, m.size);
+  if (detail::crc32_of(bytes) != m.crc) fail(m, "the content does not fit its checksum");
+  return parse_npy(std::move(bytes), inside);
+}
+
+inline array_info npz_file::read_header(std::string_view name) const {
+  const member& m = get(name);
+  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
+  const auto preamble =
+      detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
+  const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
+  detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
+  return {header.type, std::move(header.shape)};
+}
+
+inline bool npz_file::is_unreadable(std::string_view name) const {
+  try {
+    static_cast<void>(read_header(name));
+    return false;
+  } catch (const format_error&) {
+    return true;
+  }
+}
+
+inline std::string npz_file::part(std::uint64_t offset, std::uint64_t n) const {
+  if (offset > file_.size() || n > file_.size() - offset) {
+    throw format_error(path(), message("npz: bytes ", offset, " to ", offset + n,
+                                       " expected, the file has ", file_.size()));
+  }
+  std::string bytes(static_cast<std::size_t>(n), '\0');
+  file_.read_at(offset, bytes.data(), bytes.size());
+  return bytes;
+}
+
+inline npz_file::directory npz_file::find_directory() const {
+  constexpr std::uint64_t end_bytes = 22;
+  constexpr std::uint64_t max_comment = 65535;
+  const std::uint64_t tail = std::min(file_.size(), end_bytes + max_comment);
+  const std::uint64_t begin = file_.size() - tail;
+  const std::string bytes = part(begin, tail);
+  const std::size_t at = bytes.rfind("PK\x05\x06");
+  if (at == std::string::npos || tail - at < end_bytes)
+    throw format_error(path(), "npz: not a zip file, or cut off: no end of the central directory");
+  byte_reader in(std::string_view(bytes).substr(at + 8), path());
+  in.read<std::uint16_t>("npz: members");
+  const auto members = in.read<std::uint16_t>("npz: members");
+  const auto size = in.read<std::uint32_t>("npz: directory size");
+  const auto offset = in.read<std::uint32_t>("npz: directory offset");
+  if (members == 0xffff || size == detail::in_zip64 || offset == detail::in_zip64)
+    return find_directory64(begin + at);
+  return {offset, size, members};
+}
+
+inline npz_file::directory npz_file::find_directory64(std::uint64_t end) const {
+  constexpr std::uint64_t locator_bytes = 20;
+  if (end < locator_bytes) throw format_error(path(), "npz: zip64 locator expected");
+  const std::string bytes = part(end - locator_bytes, locator_bytes);
+  byte_reader locator(bytes, path());
+  if (locator.read<std::uint32_t>("npz: zip64 locator") != detail::zip64_locator)
+    throw format_error(path(), at_byte{end - locator_bytes}, "npz: zip64 locator expected");
+  locator.read<std::uint32_t>("npz: disk");
+  const auto at = locator.read<std::uint64_t>("npz: zip64 end");
+  const std::string record = part(at, 56);
+  byte_reader in(record, path());
+  if (in.read<std::uint32_t>("npz: zip64 end") != detail::zip64_end)
+    throw format_error(path(), at_byte{at}, "npz: zip64 end of the central directory expected");
+  in.take(28, "npz: zip64 end");
+  const auto members = in.read<std::uint64_t>("npz: members");
+  const auto size = in.read<std::uint64_t>("npz: directory size");
+  return {in.read<std::uint64_t>("npz: directory offset"), size, members};
+}
+
+inline npz_file::member npz_file::read_entry(byte_reader& in) {
+  if (in.read<std::uint32_t>("npz: entry") != detail::zip_central)
+    in.fail("npz: an entry of the central directory expected");
+  member m;
+  in.take(4, "npz: versions");
+  m.encrypted = (in.read<std::uint16_t>("npz: flags") & 1) != 0;
+  m.method = in.read<std::uint16_t>("npz: method");
+  in.take(4, "npz: time");
+  m.crc = in.read<std::uint32_t>("npz: checksum");
+  const auto packed = in.read<std::uint32_t>("npz: packed size");
+  const auto size = in.read<std::uint32_t>("npz: size");
+  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
+  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
+  const auto comment_bytes = in.read<std::uint16_t>("npz: comment length");
+  in.take(8, "npz: attributes");
+  const auto offset = in.read<std::uint32_t>("npz: offset");
+  m.name = in.take(name_bytes, "npz: name");
+  read_zip64(in.take(extra_bytes, "npz: extra field"), m, packed, size, offset, in);
+  in.take(comment_bytes, "npz: comment");
+  return m;
+}
+
+inline void npz_file::read_zip64(std::string_view extra,
+                                 member& m,
+                                 std::uint32_t packed,
+                                 std::uint32_t size,
+                                 std::uint32_t offset,
+                                 byte_reader& in) {
+  m.packed = packed;
+  m.size = size;
+  m.offset = offset;
+  while (extra.size() >= 4) {
+    const auto id = load<std::uint16_t>(extra.data());
+    const auto bytes = load<std::uint16_t>(extra.data() + 2);
+    std::string_view field = extra.substr(4, bytes);
+    extra.remove_prefix(std::min<std::size_t>(extra.size(), 4u + bytes));
+    if (id != 1) continue;
+    for (auto* value : {size == detail::in_zip64 ? &m.size : nullptr,
+                        packed == detail::in_zip64 ? &m.packed : nullptr,
+                        offset == detail::in_zip64 ? &m.offset : nullptr}) {
+      if (value == nullptr) continue;
+      if (field.size() < 8) in.fail("npz: the zip64 extra field is too short");
+      *value = load<std::uint64_t>(field.data());
+      field.remove_prefix(8);
+    }
+  }
+}
+
+inline const npz_file::member* npz_file::find(std::string_view name) const {
+  const auto m = std::find_if(members_.begin(), members_.end(),
+                              [&](const member& one) { return one.name == name; });
+  return m == members_.end() ? nullptr : &*m;
+}
+
+inline const npz_file::member& npz_file::get(std::string_view name) const {
+  if (const member* m = find(name)) return *m;
+  std::string known;
+  for (const member& m : members_) known += message(known.empty() ? "" : ", ", m.name);
+  throw argument_error(
+      message(path().string(), ": npz: no array '", name, "'; there are: ", known));
+}
+
+inline std::uint64_t npz_file::data_offset(const member& m) const {
+  constexpr std::uint64_t local_bytes = 30;
+  const std::string bytes = part(m.offset, local_bytes);
+  byte_reader in(bytes, path());
+  if (in.read<std::uint32_t>("npz: local header") != detail::zip_local)
+    fail(m, message("no local header at byte ", m.offset));
+  in.take(22, "npz: local header");
+  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
+  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
+  return m.offset + local_bytes + name_bytes + extra_bytes;
+}
+
+inline std::string npz_file::content(const member& m, std::uint64_t n) const {
+  constexpr std::uint16_t stored = 0;
+  constexpr std::uint16_t deflated = 8;
+  if (m.encrypted) fail(m, "encrypted");
+  if (m.method == deflated) return inflated(m, n);
+  if (m.method != stored)
+    fail(m, message("compression method ", m.method, " is not supported; 0 and 8 are"));
+  if (m.packed != m.size) fail(m, "stored, but of two sizes");
+  return part(data_offset(m), n);
+}
+
+inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
+  constexpr std::uint64_t best_ratio = 1032;  // of deflate
+  const std::uint64_t begin = data_offset(m);
+  if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
+  const double ratio = static_cast<double>(m.size) / static_cast<double>(m.packed + 1);
+  if (m.size / best_ratio > m.packed ||
+      (ratio > options_.max_ratio && m.size > options_.max_bytes)) {
+    fail(m, message("inflates from ", m.packed, " to ", m.size, " bytes, which no array does"));
+  }
+  std::string out(static_cast<std::size_t>(n), '\0');
+  std::size_t filled = 0;
+  detail::deflate_stream stream;
+  constexpr std::uint64_t block_bytes = std::uint64_t{1} << 20;
+  for (std::uint64_t at = 0; at < m.packed && filled < out.size();) {
+    const std::string block = part(begin + at, std::min(block_bytes, m.packed - at));
+    stream.input(block);
+    if (!stream.fill(out, filled)) fail(m, "the deflated data is damaged");
+    at += block.size();
+  }
+  if (filled < out.size())
+    fail(m, message(out.size(), " bytes expected, the deflated data holds ", filled));
+  return out;
+}
+
+inline void npz_file::fail(const member& m, std::string_view what) const {
+  throw format_error(path(), message("npz: '", m.name, "': ", what));
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/array_cloud.hpp
+
+#if defined(AIB_WITH_NPZ)
+#endif
+
+namespace aib::io {
+
+/// The points of an array whose last axis is x, y, z; the other axes are run through in their
+/// order. Throws format_error for another shape.
+inline cloud::cloud cloud_of_array(const array& a, const std::filesystem::path& path) {
+  if (a.shape.size() < 2 || a.shape.back() != 3)
+    throw format_error(path, message("an array of N x 3 expected, found ", text_of_shape(a.shape)));
+  cloud::cloud result;
+  const std::size_t n = a.size() / 3;
+  if (a.type == dtype::f4 || a.type == dtype::f2) {
+    const std::vector<float> values = a.values<float>();
+    for (std::size_t i = 0; i < n; ++i)
+      result.points.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  } else {
+    std::vector<Eigen::Vector3d> positions;
+    for (std::size_t i = 0; i < n; ++i)
+      positions.emplace_back(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
+    auto floats = to_floats(positions);
+    result.origin = floats.origin;
+    result.points = std::move(floats.points);
+  }
+  if (result.empty()) result.warnings.push_back("no points");
+  if (auto warning = non_finite_warning(result.points, "points"))
+    result.warnings.push_back(std::move(*warning));
+  return result;
+}
+
+/// Reads a cloud from an NPY file of N x 3 numbers.
+inline cloud::cloud read_npy_cloud(const std::filesystem::path& path) {
+  return cloud_of_array(read_npy(path), path);
+}
+
+#if defined(AIB_WITH_NPZ)
+
+/// Reads a cloud from an NPZ file.
+///
+/// key   the array; empty: `points`, `xyz`, `pts3d` or `world_points`, else the only one whose last
+///       axis is 3
+///
+/// 8-bit `colors` or `rgb` of the same shape come with it.
+/// Throws format_error where there is no such array.
+inline cloud::cloud read_npz_cloud(const std::filesystem::path& path, std::string key = {}) {
+  const npz_file file(path);
+  std::string names;
+  std::vector<std::string> candidates;
+  for (const std::string& name : file.names()) {
+    names += (names.empty() ? "" : ", ") + name;
+    if (file.is_unreadable(name)) continue;
+    const auto shape = file.read_header(name).shape;
+    if (shape.size() >= 2 && shape.back() == 3) candidates.push_back(name);
+    const bool usual =
+        name == "points" || name == "xyz" || name == "pts3d" || name == "world_points";
+    if (key.empty() && usual) key = name;
+  }
+  if (key.empty() && candidates.size() == 1) key = candidates.front();
+  if (key.empty() || !file.contains(key))
+    throw format_error(path, message("npz: ",
+                                     key.empty() ? "which array holds the points?"
+                                                 : message("no array \"", key, "\";"),
+                                     " There are ", names));
+  const array points = file.read(key);
+  cloud::cloud result = cloud_of_array(points, path);
+  for (const char* name : {"colors", "rgb"}) {
+    if (!file.contains(name) || file.is_unreadable(name)) continue;
+    const array colors = file.read(name);
+    if (colors.type != dtype::u1 || colors.shape != points.shape) continue;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      cloud::color c;
+      for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<std::uint8_t>(colors[3 * i + k]);
+      result.colors.push_back(c);
+    }
+    break;
+  }
+  return result;
+}
+
+#endif
+
+}  // namespace aib::io
+
+// aib/io/array_depth.hpp
+
+#if defined(AIB_WITH_NPZ)
+#endif
+
+namespace aib::io {
+
+/// Depth maps in an array: H x W, or N of them, with axes of length 1 before or behind as the
+/// methods leave them (VGGT: N x H x W x 1, pi3: 1 x N x H x W x 3).
+class array_frames {
+ public:
+  /// points   the last axis is x, y, z in the frame of the camera, of which z is taken
+  /// Throws format_error where the array has not that shape.
+  array_frames(array values, const std::filesystem::path& path, std::string_view name);
+
+  [[nodiscard]] std::size_t size() const { return n_; }
+
+  /// Frame number i < size().
+  [[nodiscard]] raster::image<float> frame(std::size_t i) const;
+
+ private:
+  array values_;
+  std::size_t n_ = 1, height_ = 0, width_ = 0;
+  std::size_t components_ = 1;
+};
+
+/// Reads the depth maps of an NPY or NPZ file.
+///
+/// key   the array of an NPZ file; empty: `depth`, `depths` or `local_points`, else the only one
+///       with two axes or more
+///
+/// Pickled members are never loaded. Throws format_error where there is no such array.
+array_frames read_array_frames(const std::filesystem::path& path, const std::string& key = {});
+
+inline array_frames::array_frames(array values,
+                                  const std::filesystem::path& path,
+                                  std::string_view name)
+    : values_(std::move(values)) {
+  std::vector<std::size_t> shape = values_.shape;
+  if (shape.size() > 2 && shape.back() == 3 && name == "local_points") {
+    components_ = 3;
+    shape.pop_back();
+  }
+  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
+  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
+  if (shape.size() < 2 || shape.size() > 3 || values_.size() == 0) {
+    throw format_error(
+        path, message("an array of H x W or N x H x W expected", name.empty() ? "" : " in ", name,
+                      ", found ", text_of_shape(values_.shape)));
+  }
+  width_ = shape.back();
+  height_ = shape[shape.size() - 2];
+  if (shape.size() == 3) n_ = shape.front();
+}
+
+inline raster::image<float> array_frames::frame(std::size_t i) const {
+  if (i >= n_) {
+    throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
+  }
+  raster::image<float> image(width_, height_);
+  const std::size_t first = i * image.size() * components_ + (components_ - 1);
+  for (std::size_t k = 0; k < image.size(); ++k)
+    image.data()[k] = static_cast<float>(values_[first + k * components_]);
+  return image;
+}
+
+#if defined(AIB_WITH_NPZ)
+
+namespace detail {
+
+/// The array of an NPZ file that holds depth.
+inline std::string depth_member(const npz_file& file, const std::string& key) {
+  const std::vector<std::string> names = file.names();
+  const auto list = [&] {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+  };
+  if (!key.empty()) {
+    if (file.contains(key)) return key;
+    throw format_error(file.path(), message("npz: no array \"", key, "\"; there are ", list()));
+  }
+  for (const char* usual : {"depth", "depths", "local_points"})
+    if (file.contains(usual) && !file.is_unreadable(usual)) return usual;
+  std::vector<std::string> pictures;
+  for (const std::string& name : names) {
+    if (!file.is_unreadable(name) && file.read_header(name).shape.size() >= 2)
+      pictures.push_back(name);
+  }
+  if (pictures.size() == 1) return pictures.front();
+  throw format_error(file.path(), message("npz: no array is called depth; name one of ", list()));
+}
+
+}  // namespace detail
+
+#endif
+
+inline array_frames read_array_frames(const std::filesystem::path& path, const std::string& key) {
+  std::string begin(2, '\0');
+  const input_file file(path);
+  if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
+  if (begin != "PK") return array_frames(read_npy(path), path, key);
+#if defined(AIB_WITH_NPZ)
+  const npz_file members(path);
+  const std::string name = detail::depth_member(members, key);
+  return array_frames(members.read(name), path, name);
+#else
+  throw format_error(path, "this build of aib reads no NPZ; build it with zlib");
+#endif
+}
+
+}  // namespace aib::io
+
+// aib/io/axes.hpp
+
+namespace aib::io {
+
+/// The axis that points up in a file. Blender's OBJ and glTF exports are Y up by default, its PLY
+/// and STL exports Z up.
+enum class up_axis { z, y };
+
+/// "z" or "y". Throws argument_error for another name.
+[[nodiscard]] inline up_axis parse_up_axis(std::string_view name) {
+  if (name == "z") return up_axis::z;
+  if (name == "y") return up_axis::y;
+  throw argument_error(message("up: \"z\" or \"y\" expected, found \"", name, "\""));
+}
+
+namespace detail {
+
+/// (x, y, z) of a Y-up frame in the Z-up frame: (x, -z, y).
+template <class Scalar>
+Eigen::Matrix<Scalar, 3, 1> z_up_from_y_up(const Eigen::Matrix<Scalar, 3, 1>& v) {
+  return {v[0], -v[2], v[1]};
+}
+
+}  // namespace detail
+
+/// Turns a cloud so that z points up, with its normals.
+inline void turn_z_up(cloud::cloud& cloud, up_axis from) {
+  if (from == up_axis::z) return;
+  cloud.origin = detail::z_up_from_y_up(cloud.origin);
+  for (Eigen::Vector3f& p : cloud.points) p = detail::z_up_from_y_up(p);
+  for (Eigen::Vector3f& n : cloud.normals) n = detail::z_up_from_y_up(n);
+}
+
+/// Turns a mesh so that z points up.
+inline void turn_z_up(mesh::mesh& mesh, up_axis from) {
+  if (from == up_axis::z) return;
+  mesh.origin = detail::z_up_from_y_up(mesh.origin);
+  for (Eigen::Vector3f& v : mesh.vertices) v = detail::z_up_from_y_up(v);
 }
 
 }  // namespace aib::io
@@ -6516,6 +10563,110 @@ inline file_kind kind_of_extension(std::string_view extension) {
 
 }  // namespace aib::io
 
+// aib/io/las.hpp
+
+namespace aib::io {
+
+/// Reads a LAS file, versions 1.0 to 1.4, point formats 0 to 10: positions, colours, and the
+/// classification as label. Colours of 16 bits become 8; files that store 0..255 in them are told
+/// from their largest value.
+///
+/// Throws format_error where the file is damaged, and for LAZ, which is compressed.
+/// Source: ASPRS, "LAS Specification 1.4 - R15".
+cloud::cloud read_las(const std::filesystem::path& path);
+
+namespace detail {
+
+struct las_header {
+  std::uint64_t n_points = 0;
+  std::uint64_t points_at = 0;
+  std::size_t format = 0;
+  std::size_t record_bytes = 0;
+  Eigen::Vector3d scale, offset;
+};
+
+/// Bytes of a record, and where its colour lies (0: none), by point format.
+inline constexpr std::array<std::size_t, 11> las_record_bytes{20, 28, 26, 34, 57, 63,
+                                                              30, 36, 38, 59, 67};
+inline constexpr std::array<std::size_t, 11> las_color_at{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
+
+inline las_header read_las_header(const input_file& file) {
+  constexpr std::size_t smallest = 227;
+  const auto refuse = [&](std::string_view what) {
+    throw format_error(file.path(), message("las: ", what));
+  };
+  if (file.size() < smallest) refuse("the file ends within the header");
+  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 375)), '\0');
+  file.read_at(0, bytes.data(), bytes.size());
+  const auto u8 = [&](std::size_t at) { return std::size_t{load<std::uint8_t>(&bytes[at])}; };
+  if (!bytes.starts_with("LASF") || u8(24) != 1) refuse("not a LAS file of version 1");
+  las_header header;
+  header.points_at = load<std::uint32_t>(&bytes[96]);
+  if (u8(104) >= 64)
+    refuse(
+        "LAZ is compressed; convert it with `laszip -i in.laz -o out.las` or "
+        "`pdal translate in.laz out.las`");
+  header.format = u8(104);
+  header.record_bytes = load<std::uint16_t>(&bytes[105]);
+  header.n_points = load<std::uint32_t>(&bytes[107]);
+  if (u8(25) >= 4 && bytes.size() >= 255) header.n_points = load<std::uint64_t>(&bytes[247]);
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    header.scale[k] = load<double>(&bytes[131 + 8 * axis]);
+    header.offset[k] = load<double>(&bytes[155 + 8 * axis]);
+  }
+  if (header.format > 10) refuse(message("point format 0 to 10 expected, found ", header.format));
+  if (header.record_bytes < las_record_bytes[header.format])
+    refuse(message("records of ", las_record_bytes[header.format], " bytes expected, found ",
+                   header.record_bytes));
+  if (!header.scale.allFinite() || !header.offset.allFinite())
+    refuse("scale or offset is not finite");
+  if (header.points_at > file.size() ||
+      header.n_points > (file.size() - header.points_at) / header.record_bytes)
+    refuse(message(header.n_points, " records of ", header.record_bytes, " bytes from byte ",
+                   header.points_at, " expected, the file has ", file.size(), " bytes"));
+  return header;
+}
+
+}  // namespace detail
+
+inline cloud::cloud read_las(const std::filesystem::path& path) {
+  const input_file file(path);
+  const auto header = detail::read_las_header(file);
+  const auto n = static_cast<std::size_t>(header.n_points);
+  const std::size_t color_at = detail::las_color_at[header.format];
+  std::vector<Eigen::Vector3d> positions(n);
+  std::vector<std::array<std::uint16_t, 3>> colors(color_at > 0 ? n : 0);
+  cloud::cloud result;
+  result.labels.resize(n);
+  std::uint16_t brightest = 0;
+  byte_stream in(file, header.points_at);
+  for (std::size_t i = 0; i < n; ++i) {
+    const char* record = in.take(header.record_bytes, "las: record");
+    for (int k = 0; k < 3; ++k)
+      positions[i][k] = load<std::int32_t>(record + 4 * k) * header.scale[k] + header.offset[k];
+    const bool is_old = header.format < 6;
+    const auto classification = load<std::uint8_t>(record + (is_old ? 15 : 16));
+    result.labels[i] = is_old ? classification & 31u : classification;
+    for (std::size_t k = 0; k < 3 && color_at > 0; ++k) {
+      colors[i][k] = load<std::uint16_t>(record + color_at + 2 * k);
+      brightest = std::max(brightest, colors[i][k]);
+    }
+  }
+  const unsigned unit = brightest > 255 ? 257 : 1;
+  for (const auto& c : colors)
+    result.colors.push_back({static_cast<std::uint8_t>(c[0] / unit),
+                             static_cast<std::uint8_t>(c[1] / unit),
+                             static_cast<std::uint8_t>(c[2] / unit)});
+  auto floats = to_floats(positions);
+  result.origin = floats.origin;
+  result.points = std::move(floats.points);
+  if (result.empty()) result.warnings.push_back("no points");
+  return result;
+}
+
+}  // namespace aib::io
+
 // aib/io/numbers.hpp
 
 namespace aib::io {
@@ -6546,94 +10697,442 @@ namespace aib::io {
 
 }  // namespace aib::io
 
-// aib/io/text.hpp
+// aib/io/obj.hpp
 
 namespace aib::io {
 
-/// The text without blanks and line ends at both sides.
-[[nodiscard]] inline std::string_view trim(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\n\v\f";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
+/// Reads vertices and faces of a Wavefront OBJ file. Polygons become fans around their first
+/// vertex; indices may be negative (from the end); everything else in the file is passed over.
+/// Faces of less than three vertices are dropped with a warning.
+///
+/// Throws format_error where a number is damaged or an index has no vertex.
+/// Source: Wavefront, "Object Files (.obj)", appendix B of the Advanced Visualizer manual.
+mesh::mesh read_obj(const std::filesystem::path& path);
 
-/// The fields of a line: parted by `separator`, or by runs of blanks where it is 0. Fields are
-/// trimmed.
-inline void split(std::string_view line,
-                  std::vector<std::string_view>& fields,
-                  char separator = 0) {
-  fields.clear();
-  if (separator == 0) {
-    constexpr std::string_view blank = " \t\r\n\v\f";
-    for (std::size_t at = line.find_first_not_of(blank); at != std::string_view::npos;) {
-      const std::size_t end = std::min(line.find_first_of(blank, at), line.size());
-      fields.push_back(line.substr(at, end - at));
-      at = line.find_first_not_of(blank, end);
-    }
-    return;
-  }
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(trim(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end + 1);
-  }
-}
+namespace detail {
 
-/// The number that the whole text is, in no locale; nothing where it is not one. "nan" and "inf"
-/// are numbers, a leading + is allowed.
-template <class Number>
-[[nodiscard]] std::optional<Number> parse(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  Number value{};
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (code != std::errc()) return std::nullopt;
-  return value;
-}
-
-/// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
-/// skipped.
-class line_reader {
+class obj_reader {
  public:
-  line_reader(std::string_view text, std::filesystem::path path)
-      : rest_(text), path_(std::move(path)) {
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
-  }
+  obj_reader(std::string_view text, const std::filesystem::path& path)
+      : lines_(text, path), path_(path) {}
 
-  /// Moves to the next line; false after the last.
-  bool next() {
-    if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
-    line_ = rest_.substr(0, end);
-    if (line_.ends_with('\r')) line_.remove_suffix(1);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    ++number_;
-    return true;
-  }
-
-  /// Moves to the next line that is neither blank nor a comment ('#').
-  bool next_content() {
-    while (next()) {
-      const std::string_view content = trim(line_);
-      if (!content.empty() && content.front() != '#') return true;
+  mesh::mesh read() {
+    while (next_statement()) {
+      const std::string_view keyword = take_word();
+      if (keyword == "v") {
+        add_vertex();
+      } else if (keyword == "f") {
+        add_face();
+      }
     }
-    return false;
-  }
-
-  [[nodiscard]] std::string_view line() const { return line_; }
-  [[nodiscard]] std::size_t number() const { return number_; }
-  [[noreturn]] void fail(std::string_view what) const {
-    throw format_error(path_, at_line{number_}, what);
+    if (highest_ >= vertices_.size() && !result_.triangles.empty()) {
+      throw format_error(path_, at_line{highest_line_},
+                         message("obj: vertex ", highest_ + 1, " of ", vertices_.size()));
+    }
+    return finish();
   }
 
  private:
-  std::string_view rest_;
-  std::string_view line_;
-  std::size_t number_ = 0;
+  /// Moves to the next statement; a backslash at the end of a line goes on in the next.
+  bool next_statement() {
+    if (!lines_.next()) return false;
+    rest_ = trim(lines_.line());
+    if (!rest_.ends_with('\\')) return true;
+    joined_.clear();
+    while (rest_.ends_with('\\')) {
+      joined_ += rest_.substr(0, rest_.size() - 1);
+      joined_ += ' ';
+      rest_ = lines_.next() ? trim(lines_.line()) : std::string_view();
+    }
+    joined_ += rest_;
+    rest_ = joined_;
+    return true;
+  }
+
+  std::string_view take_word() {
+    constexpr std::string_view blank = " \t\v\f";
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(blank), rest_.size()));
+    const std::size_t end = std::min(rest_.find_first_of(blank), rest_.size());
+    const std::string_view word = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return word;
+  }
+
+  void add_vertex() {
+    Eigen::Vector3d v;
+    for (int k = 0; k < 3; ++k) {
+      const auto number = take_number(rest_);
+      if (!number) lines_.fail(message("obj: 3 coordinates of a vertex expected, found ", k));
+      v[k] = *number;
+    }
+    vertices_.push_back(v);
+  }
+
+  void add_face() {
+    corners_.clear();
+    for (std::string_view word = take_word(); !word.empty(); word = take_word())
+      corners_.push_back(vertex_of(word.substr(0, word.find('/'))));
+    n_dropped_ += corners_.size() < 3 ? 1u : 0u;
+    for (std::size_t k = 2; k < corners_.size(); ++k)
+      result_.triangles.push_back({corners_[0], corners_[k - 1], corners_[k]});
+  }
+
+  /// "3" is the third vertex, "-1" the last one so far. A vertex may come after its face: that it
+  /// exists is checked at the end.
+  std::uint32_t vertex_of(std::string_view word) {
+    const auto index = parse<std::int64_t>(word);
+    const auto n = static_cast<std::int64_t>(vertices_.size());
+    if (!index || *index == 0 || *index < -n ||
+        *index > std::int64_t{std::numeric_limits<std::uint32_t>::max()}) {
+      lines_.fail(message("obj: the index of a vertex (1 to ", n, ", or -1 to -", n,
+                          ") expected, found \"", word.substr(0, 40), "\""));
+    }
+    const std::int64_t vertex = *index > 0 ? *index - 1 : n + *index;
+    if (static_cast<std::size_t>(vertex) > highest_) {
+      highest_ = static_cast<std::size_t>(vertex);
+      highest_line_ = lines_.number();
+    }
+    return static_cast<std::uint32_t>(vertex);
+  }
+
+  mesh::mesh finish() {
+    auto floats = to_floats(vertices_);
+    result_.origin = floats.origin;
+    result_.vertices = std::move(floats.points);
+    if (n_dropped_ > 0)
+      result_.warnings.push_back(
+          message(n_dropped_, " faces of less than 3 vertices were dropped"));
+    if (result_.triangles.empty()) result_.warnings.push_back("no triangles");
+    if (auto warning = non_finite_warning(result_.vertices, "vertices"))
+      result_.warnings.push_back(std::move(*warning));
+    return std::move(result_);
+  }
+
+  line_reader lines_;
   std::filesystem::path path_;
+  std::string_view rest_;
+  std::string joined_;
+  std::vector<Eigen::Vector3d> vertices_;
+  std::vector<std::uint32_t> corners_;
+  std::size_t highest_ = 0;
+  std::size_t highest_line_ = 0;
+  std::size_t n_dropped_ = 0;
+  mesh::mesh result_;
 };
+
+}  // namespace detail
+
+inline mesh::mesh read_obj(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  return detail::obj_reader(text, path).read();
+}
+
+}  // namespace aib::io
+
+// aib/io/pcd.hpp
+
+namespace aib::io {
+
+/// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
+/// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
+///
+/// Throws format_error where the file is damaged.
+/// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
+cloud::cloud read_pcd(const std::filesystem::path& path);
+
+namespace detail {
+
+struct pcd_field {
+  std::string name;
+  char type = 'F';         ///< F, I or U
+  std::size_t bytes = 4;   ///< of one number
+  std::size_t count = 1;   ///< numbers a point
+  std::size_t offset = 0;  ///< in a binary row
+};
+
+struct pcd_header {
+  std::vector<pcd_field> fields = {};
+  std::uint64_t n = 0;
+  std::string data = {};
+  std::size_t end = 0;  ///< byte of the first datum
+  std::size_t lines = 0;
+  bool has_viewpoint = false;
+
+  [[nodiscard]] std::size_t row_bytes() const {
+    return fields.empty() ? 0 : fields.back().offset + fields.back().bytes * fields.back().count;
+  }
+  [[nodiscard]] const pcd_field* find(std::string_view name) const {
+    for (const pcd_field& f : fields)
+      if (f.name == name) return &f;
+    return nullptr;
+  }
+};
+
+class pcd_header_parser {
+ public:
+  pcd_header_parser(std::string_view text, const std::filesystem::path& path)
+      : text_(text), lines_(text, path) {}
+
+  pcd_header parse() {
+    while (lines_.next_content()) {
+      split(lines_.line(), words_);
+      const std::string_view key = words_[0];
+      if (key == "FIELDS" || key == "COLUMNS") parse_names();
+      if (key == "SIZE") each([](pcd_field& f, std::size_t v) { f.bytes = v; });
+      if (key == "COUNT") each([](pcd_field& f, std::size_t v) { f.count = v; });
+      if (key == "TYPE") parse_types();
+      if (key == "WIDTH") width_ = number(1);
+      if (key == "HEIGHT") height_ = number(1);
+      if (key == "POINTS") points_ = number(1);
+      if (key == "VIEWPOINT") parse_viewpoint();
+      if (key == "DATA") return finish();
+    }
+    lines_.fail("pcd: no DATA line");
+  }
+
+ private:
+  void parse_names() {
+    for (std::size_t i = 1; i < words_.size(); ++i)
+      header_.fields.push_back({std::string(words_[i])});
+  }
+
+  template <class Set>
+  void each(Set set) {
+    if (words_.size() != header_.fields.size() + 1)
+      lines_.fail(message("pcd: ", header_.fields.size(), " values expected"));
+    for (std::size_t i = 0; i < header_.fields.size(); ++i)
+      set(header_.fields[i], static_cast<std::size_t>(number(i + 1)));
+  }
+
+  void parse_types() {
+    if (words_.size() != header_.fields.size() + 1) lines_.fail("pcd: a TYPE a field expected");
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+      if (words_[i + 1] != "F" && words_[i + 1] != "I" && words_[i + 1] != "U")
+        lines_.fail("pcd: TYPE F, I or U expected");
+      header_.fields[i].type = words_[i + 1][0];
+    }
+  }
+
+  void parse_viewpoint() {
+    constexpr std::array<std::string_view, 8> identity{"VIEWPOINT", "0", "0", "0",
+                                                       "1",         "0", "0", "0"};
+    for (std::size_t i = 0; i < identity.size() && i < words_.size(); ++i)
+      header_.has_viewpoint = header_.has_viewpoint || words_[i] != identity[i];
+  }
+
+  std::uint64_t number(std::size_t i) const {
+    const auto value = i < words_.size() ? io::parse<std::uint64_t>(words_[i]) : std::nullopt;
+    if (!value || *value > std::uint64_t{1} << 40)
+      lines_.fail(message("pcd: a whole number expected behind ", words_[0]));
+    return *value;
+  }
+
+  pcd_header finish() {
+    if (words_.size() != 2) lines_.fail("pcd: DATA ascii, binary or binary_compressed expected");
+    header_.data = words_[1];
+    header_.n = points_ ? *points_ : width_ * height_;
+    std::size_t offset = 0;
+    for (pcd_field& f : header_.fields) {
+      const bool known = f.bytes == 1 || f.bytes == 2 || f.bytes == 4 || f.bytes == 8;
+      if (!known || (f.type == 'F' && f.bytes < 4) || f.count == 0 || f.count > 65536)
+        lines_.fail(
+            message("pcd: field ", f.name, " of ", f.count, " numbers of ", f.bytes, " bytes"));
+      f.offset = offset;
+      offset += f.bytes * f.count;
+    }
+    for (const char* axis : {"x", "y", "z"})
+      if (!header_.find(axis)) lines_.fail("pcd: fields x, y and z expected");
+    const std::string_view line = lines_.line();
+    header_.end = static_cast<std::size_t>(line.data() + line.size() - text_.data());
+    header_.end = std::min(text_.find('\n', header_.end), text_.size() - 1) + 1;
+    header_.lines = lines_.number();
+    return std::move(header_);
+  }
+
+  std::string_view text_;
+  line_reader lines_;
+  std::vector<std::string_view> words_;
+  pcd_header header_;
+  std::uint64_t width_ = 0, height_ = 1;
+  std::optional<std::uint64_t> points_;
+};
+
+/// Expands LibLZF; false where the result has not exactly `to.size()` bytes.
+inline bool expand_lzf(std::string_view from, std::span<char> to) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < from.size();) {
+    const std::size_t control = static_cast<unsigned char>(from[i++]);
+    const auto next = [&] { return std::size_t{static_cast<unsigned char>(from[i++])}; };
+    if (control < 32) {
+      const std::size_t run = control + 1;
+      if (run > from.size() - i || run > to.size() - n) return false;
+      std::memcpy(to.data() + n, from.data() + i, run);
+      i += run;
+      n += run;
+      continue;
+    }
+    std::size_t run = control >> 5;
+    if (from.size() - i < (run == 7 ? 2u : 1u)) return false;
+    if (run == 7) run += next();
+    run += 2;
+    const std::size_t back = ((control & 31) << 8) + next() + 1;
+    if (back > n || run > to.size() - n) return false;
+    for (std::size_t k = 0; k < run; ++k, ++n) to[n] = to[n - back];
+  }
+  return n == to.size();
+}
+
+inline double pcd_number(const pcd_field& field, const char* at) {
+  const auto as = [&]<class I, class U>(I, U) {
+    return field.type == 'I' ? static_cast<double>(load<I>(at)) : static_cast<double>(load<U>(at));
+  };
+  if (field.type == 'F')
+    return field.bytes == 4 ? static_cast<double>(load<float>(at)) : load<double>(at);
+  switch (field.bytes) {
+    case 1:
+      return as(std::int8_t{}, std::uint8_t{});
+    case 2:
+      return as(std::int16_t{}, std::uint16_t{});
+    case 4:
+      return as(std::int32_t{}, std::uint32_t{});
+    default:
+      return as(std::int64_t{}, std::uint64_t{});
+  }
+}
+
+/// Numbers of the wanted fields, point by point.
+class pcd_points {
+ public:
+  pcd_points(const pcd_header& header, std::string_view bytes, const std::filesystem::path& path)
+      : header_(header),
+        path_(path),
+        color_(header.find("rgb") ? header.find("rgb") : header.find("rgba")),
+        label_(header.find("label")) {
+    if (header.data == "ascii") {
+      read_ascii(bytes);
+    } else if (header.data == "binary") {
+      read_binary(bytes.substr(header.end), header.row_bytes());
+    } else if (header.data == "binary_compressed") {
+      read_compressed(bytes.substr(header.end));
+    } else {
+      fail(message("DATA ascii, binary or binary_compressed expected, found ", header.data));
+    }
+  }
+
+  cloud::cloud finish() {
+    auto floats = to_floats(positions_);
+    result_.origin = floats.origin;
+    result_.points = std::move(floats.points);
+    if (header_.has_viewpoint)
+      result_.warnings.push_back("the viewpoint in the header was not applied");
+    if (result_.empty()) result_.warnings.push_back("no points");
+    if (auto warning = non_finite_warning(result_.points, "points"))
+      result_.warnings.push_back(std::move(*warning));
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("pcd: ", what));
+  }
+
+  void read_ascii(std::string_view text) {
+    line_reader lines(text, path_);
+    for (std::size_t i = 0; i < header_.lines; ++i) lines.next();
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      if (!lines.next_content())
+        lines.fail(message("pcd: ", header_.n, " points expected, found ", i));
+      std::string_view rest = lines.line();
+      add([&](const pcd_field& f, std::size_t) {
+        const auto number = take_number(rest);
+        if (!number) lines.fail(message("pcd: a number expected for ", f.name));
+        return *number;
+      });
+    }
+  }
+
+  void read_binary(std::string_view bytes, std::size_t row) {
+    if (header_.n > bytes.size() / row)
+      fail(message(header_.n, " points of ", row, " bytes expected, the file has ", bytes.size(),
+                   " bytes for them"));
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      const char* at = bytes.data() + i * row;
+      add([&](const pcd_field& f, std::size_t k) {
+        return pcd_number(f, at + f.offset + k * f.bytes);
+      });
+    }
+  }
+
+  /// Compressed data lie field after field.
+  void read_compressed(std::string_view bytes) {
+    byte_reader in(bytes, path_);
+    const auto packed = in.read<std::uint32_t>("pcd: compressed size");
+    const auto size = in.read<std::uint32_t>("pcd: size");
+    const std::string_view block = in.take(packed, "pcd: compressed points");
+    constexpr std::size_t most = 264;  // what three bytes of LZF can stand for
+    if (header_.n > size / header_.row_bytes() || size != header_.n * header_.row_bytes() ||
+        size / most > packed)
+      fail(message(header_.n, " points of ", header_.row_bytes(), " bytes expected, found ", size,
+                   " bytes in ", packed));
+    std::vector<char> plain(size);
+    if (!expand_lzf(block, plain)) fail("the compressed points are damaged");
+    for (std::uint64_t i = 0; i < header_.n; ++i) {
+      add([&](const pcd_field& f, std::size_t k) {
+        return pcd_number(f, plain.data() + f.offset * header_.n + (i * f.count + k) * f.bytes);
+      });
+    }
+  }
+
+  /// Adds a point whose numbers `get(field, k)` gives in file order.
+  template <class Get>
+  void add(Get get) {
+    Eigen::Vector3d position(0, 0, 0);
+    Eigen::Vector3f normal(0, 0, 0);
+    for (const pcd_field& f : header_.fields) {
+      for (std::size_t k = 0; k < f.count; ++k) {
+        const double value = get(f, k);
+        if (k > 0) continue;
+        if (f.name.size() == 1 && f.name[0] >= 'x' && f.name[0] <= 'z')
+          position[f.name[0] - 'x'] = value;
+        if (f.name.size() == 8 && f.name.starts_with("normal_") && f.name[7] >= 'x' &&
+            f.name[7] <= 'z')
+          normal[f.name[7] - 'x'] = static_cast<float>(value);
+        if (&f == color_) result_.colors.push_back(color(f, value));
+        if (&f == label_) result_.labels.push_back(label_of(value));
+      }
+    }
+    positions_.push_back(position);
+    if (header_.find("normal_x")) result_.normals.push_back(normal);
+  }
+
+  static std::uint32_t label_of(double value) {
+    return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  }
+
+  /// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
+  static cloud::color color(const pcd_field& field, double value) {
+    const std::uint32_t bits = field.type == 'F'
+                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+                                   : label_of(value);
+    return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
+            static_cast<std::uint8_t>(bits)};
+  }
+
+  const pcd_header& header_;
+  std::filesystem::path path_;
+  const pcd_field* color_;
+  const pcd_field* label_;
+  std::vector<Eigen::Vector3d> positions_;
+  cloud::cloud result_;
+};
+
+}  // namespace detail
+
+inline cloud::cloud read_pcd(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const auto header = detail::pcd_header_parser(bytes, path).parse();
+  return detail::pcd_points(header, bytes, path).finish();
+}
 
 }  // namespace aib::io
 
@@ -7044,57 +11543,6 @@ inline std::unique_ptr<ply_data> open_ply_data(const input_file& file, const ply
 }
 
 }  // namespace aib::io::detail
-
-// aib/io/positions.hpp
-
-namespace aib::io {
-
-/// Positions as clouds and meshes keep them: `origin + points[i]`.
-struct float_positions {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> points = {};
-};
-
-/// Double positions as floats from the natural origin of their finite ones.
-[[nodiscard]] inline float_positions to_floats(std::span<const Eigen::Vector3d> positions) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinite);
-  Eigen::Vector3d high = -low;
-  for (const Eigen::Vector3d& p : positions) {
-    if (!p.allFinite()) continue;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  float_positions result;
-  if (low[0] <= high[0]) result.origin = cloud::natural_origin(low, high);
-  result.points.reserve(positions.size());
-  for (const Eigen::Vector3d& p : positions)
-    result.points.emplace_back((p - result.origin).cast<float>());
-  return result;
-}
-
-/// How many points have a coordinate that is NaN or infinite.
-[[nodiscard]] inline std::size_t count_non_finite(std::span<const Eigen::Vector3f> points) {
-  // All exponent bits set: looked for in one flat loop without branches, since most files have
-  // none.
-  const float* flat = points.empty() ? nullptr : points.front().data();
-  std::uint32_t any = 0;
-  for (std::size_t i = 0; i < 3 * points.size(); ++i)
-    any |= (std::bit_cast<std::uint32_t>(flat[i]) & 0x7f800000u) == 0x7f800000u ? 1u : 0u;
-  if (any == 0) return 0;
-  return static_cast<std::size_t>(std::count_if(
-      points.begin(), points.end(), [](const Eigen::Vector3f& p) { return !p.allFinite(); }));
-}
-
-/// The sentence that a reader leaves about non-finite points; nothing where all are finite.
-[[nodiscard]] inline std::optional<std::string> non_finite_warning(
-    std::span<const Eigen::Vector3f> points, std::string_view name) {
-  const std::size_t n = count_non_finite(points);
-  if (n == 0) return std::nullopt;
-  return message(n, " of ", points.size(), " ", name, " are not finite");
-}
-
-}  // namespace aib::io
 
 // aib/io/ply.hpp
 
@@ -7649,30 +12097,603 @@ inline void write_ply(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/io/xyz.hpp
+
+namespace aib::io {
+
+/// Reads points from text, one a line: XYZ, CSV, PTS, ASC. Numbers are parted by blanks, commas or
+/// semicolons; lines that begin with # or // are comments; a first line of names is understood
+/// (x y z, nx ny nz, r g b or red green blue); a first line with one number is the count of PTS.
+///
+/// Without names the columns behind x y z are: one of intensity (passed over), then three that are
+/// colours where all of them are whole numbers 0..255 and normals where they are of length 1, then
+/// three of the other kind. What is neither is passed over with a warning.
+///
+/// Throws format_error where a row has another number of columns than the first, or less than 3.
+cloud::cloud read_xyz(const std::filesystem::path& path);
+
+namespace detail {
+
+/// A table of numbers in a text file.
+class xyz_table {
+ public:
+  explicit xyz_table(const std::filesystem::path& path)
+      : path_(path), text_(read_file(path)), lines_(text_, path) {
+    while (lines_.next()) {
+      const std::string_view line = trim(lines_.line());
+      if (line.empty()) continue;
+      if (line.front() == '#' || line.starts_with("//")) {
+        if (columns_ == 0)
+          read_names(line.substr(std::min(line.find_first_not_of("#/"), line.size())));
+        continue;
+      }
+      read_row(line);
+    }
+    if (announced_ && *announced_ != static_cast<double>(rows()))
+      lines_.fail(message("xyz: ", *announced_, " points announced, found ", rows()));
+  }
+
+  [[nodiscard]] std::size_t rows() const { return columns_ == 0 ? 0 : values_.size() / columns_; }
+  [[nodiscard]] std::size_t columns() const { return columns_; }
+  [[nodiscard]] double operator()(std::size_t row, std::size_t column) const {
+    return values_[row * columns_ + column];
+  }
+
+  /// First of three neighbouring columns with these names.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view a,
+                                                std::string_view b,
+                                                std::string_view c) const {
+    if (names_.size() != columns_) return std::nullopt;
+    for (std::size_t i = 0; i + 2 < names_.size(); ++i)
+      if (names_[i] == a && names_[i + 1] == b && names_[i + 2] == c) return i;
+    return std::nullopt;
+  }
+  [[nodiscard]] bool has_names() const { return columns_ > 0 && names_.size() == columns_; }
+
+ private:
+  static constexpr std::string_view separators = " \t\r\v\f,;";
+
+  void read_names(std::string_view line) {
+    names_.clear();
+    std::string name;
+    for (const char c : std::string(line) + ' ') {
+      if (separators.find(c) == std::string_view::npos) {
+        if (c != '"') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      } else if (!name.empty()) {
+        names_.push_back(std::exchange(name, {}));
+      }
+    }
+  }
+
+  void read_row(std::string_view line) {
+    std::string_view rest = line;
+    const std::size_t before = values_.size();
+    while (const auto value = take_number(rest, separators)) values_.push_back(*value);
+    const std::size_t n = values_.size() - before;
+    rest.remove_prefix(std::min(rest.find_first_not_of(separators), rest.size()));
+    const bool is_first = columns_ == 0 && !announced_;
+    if (is_first && n == 0) return read_names(line);
+    if (is_first && n == 1 && rest.empty()) {
+      announced_ = values_.back();
+      values_.pop_back();
+      return;
+    }
+    if (!rest.empty())
+      lines_.fail(message("xyz: a number expected, found \"", rest.substr(0, 40), "\""));
+    if (columns_ == 0) columns_ = n;
+    if (n < 3 || n != columns_)
+      lines_.fail(
+          message("xyz: ", std::max<std::size_t>(columns_, 3), " numbers expected, found ", n));
+  }
+
+  std::filesystem::path path_;
+  std::string text_;
+  line_reader lines_;
+  std::vector<double> values_;
+  std::vector<std::string> names_;
+  std::optional<double> announced_;
+  std::size_t columns_ = 0;
+};
+
+/// Which columns of a table hold what.
+struct xyz_columns {
+  std::size_t position = 0;
+  std::optional<std::size_t> color, normal;
+  bool has_unknown = false;
+};
+
+inline bool are_colors(const xyz_table& table, std::size_t first) {
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    for (std::size_t k = first; k < first + 3; ++k) {
+      const double v = table(i, k);
+      if (!(v >= 0 && v <= 255) || v != std::floor(v)) return false;
+    }
+  }
+  return true;
+}
+
+inline bool are_normals(const xyz_table& table, std::size_t first) {
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const Eigen::Vector3d v(table(i, first), table(i, first + 1), table(i, first + 2));
+    if (!(std::abs(v.norm() - 1) < 0.01 || v.isZero(0))) return false;
+  }
+  return true;
+}
+
+inline xyz_columns find_columns(const xyz_table& table, const std::filesystem::path& path) {
+  xyz_columns columns;
+  if (table.has_names()) {
+    const auto position = table.find("x", "y", "z");
+    if (!position) throw format_error(path, "xyz: no columns x, y, z in the first line");
+    columns.position = *position;
+    columns.normal = table.find("nx", "ny", "nz");
+    columns.color = table.find("r", "g", "b");
+    if (!columns.color) columns.color = table.find("red", "green", "blue");
+    return columns;
+  }
+  const std::size_t extra = table.columns() - 3;
+  std::size_t at = 3 + (extra % 3 == 1 ? 1 : 0);
+  for (; at + 3 <= table.columns(); at += 3) {
+    if (!columns.color && are_colors(table, at)) {
+      columns.color = at;
+    } else if (!columns.normal && are_normals(table, at)) {
+      columns.normal = at;
+    } else {
+      columns.has_unknown = true;
+    }
+  }
+  columns.has_unknown = columns.has_unknown || at < table.columns();
+  return columns;
+}
+
+}  // namespace detail
+
+inline cloud::cloud read_xyz(const std::filesystem::path& path) {
+  const detail::xyz_table table(path);
+  cloud::cloud result;
+  if (table.rows() == 0) {
+    result.warnings.push_back("no points");
+    return result;
+  }
+  const auto columns = detail::find_columns(table, path);
+  std::vector<Eigen::Vector3d> positions(table.rows());
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto triple = [&](std::size_t first) {
+      return Eigen::Vector3d(table(i, first), table(i, first + 1), table(i, first + 2));
+    };
+    positions[i] = triple(columns.position);
+    if (columns.normal) result.normals.push_back(triple(*columns.normal).cast<float>());
+    if (columns.color) {
+      const Eigen::Vector3d c = triple(*columns.color).cwiseMax(0).cwiseMin(255);
+      result.colors.push_back({static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]),
+                               static_cast<std::uint8_t>(c[2])});
+    }
+  }
+  auto floats = to_floats(positions);
+  result.origin = floats.origin;
+  result.points = std::move(floats.points);
+  if (columns.has_unknown)
+    result.warnings.push_back("columns that are neither colours nor normals were passed over");
+  if (auto warning = non_finite_warning(result.points, "points"))
+    result.warnings.push_back(std::move(*warning));
+  return result;
+}
+
+}  // namespace aib::io
+
+// aib/io/glb.hpp
+
+#if defined(AIB_WITH_JSON)
+#include <nlohmann/json.hpp>
+
+namespace aib::io {
+
+/// Reads the triangles of a binary glTF 2.0 file (.glb): lists, strips and fans, each node's
+/// transformation applied. A label for each node with a mesh, named as the node. Y is up in glTF.
+///
+/// Throws format_error where the file is damaged, an index has no vertex, or the file has what is
+/// not read: compressed, quantised or sparse meshes, buffers outside of the file.
+/// Source: Khronos, glTF 2.0 specification.
+mesh::mesh read_glb_mesh(const std::filesystem::path& path);
+
+/// Reads the points of a binary glTF 2.0 file with their colours; of a file without points, the
+/// vertices of its meshes.
+cloud::cloud read_glb_cloud(const std::filesystem::path& path);
+
+namespace detail {
+
+/// What all primitives of a file together hold, in its world.
+struct glb_content {
+  std::vector<Eigen::Vector3d> vertices = {};
+  std::vector<mesh::triangle> triangles = {};
+  std::vector<std::uint32_t> labels = {};
+  std::vector<std::string> label_names = {};
+  std::vector<Eigen::Vector3d> points = {};
+  std::vector<cloud::color> colors = {};
+};
+
+class glb_reader {
+ public:
+  using json = nlohmann::json;
+
+  glb_reader(std::string_view bytes, const std::filesystem::path& path) : path_(path) {
+    byte_reader in(bytes, path);
+    if (in.take(4, "glb: magic") != "glTF") in.fail("glb: not a binary glTF file");
+    const auto version = in.read<std::uint32_t>("glb: version");
+    if (version != 2) in.fail(message("glb: version 2 expected, found ", version));
+    in.take(4, "glb: length");
+    while (in.left() >= 8) {
+      const auto n = in.read<std::uint32_t>("glb: length of a chunk");
+      const std::string_view type = in.take(4, "glb: type of a chunk");
+      const std::string_view chunk = in.take(n, "glb: chunk");
+      if (type == "JSON") root_ = json::parse(chunk, nullptr, false);
+      if (type == std::string_view("BIN\0", 4) && buffer_.empty()) buffer_ = chunk;
+    }
+    if (!root_.is_object()) fail("no JSON description, or a damaged one");
+    for (const json& extension : list(root_, "extensionsRequired")) {
+      if (extension.is_string() && extension.get<std::string>().find("unlit") == std::string::npos)
+        fail(message("the extension ", extension.get<std::string>(),
+                     " is not supported; export the mesh without compression"));
+    }
+  }
+
+  glb_content read() {
+    const json& nodes = list(root_, "nodes");
+    visited_.assign(nodes.size(), false);
+    for (const std::size_t node : roots(nodes)) visit(node, Eigen::Affine3d::Identity(), 0);
+    return std::move(content_);
+  }
+
+ private:
+  static constexpr std::size_t points = 0, triangles = 4, strip = 5, fan = 6;  // modes
+  static constexpr std::size_t max_vertices = std::size_t{1} << 28;
+
+  static const json& list(const json& object, const char* name) {
+    static const json empty = json::array();
+    const auto found = object.find(name);
+    return found != object.end() && found->is_array() ? *found : empty;
+  }
+
+  /// Element `index` of the top-level list `name`.
+  const json& element(const char* name, std::size_t index) const {
+    const json& all = list(root_, name);
+    if (index >= all.size() || !all[index].is_object())
+      fail(message("no element ", index, " in ", name));
+    return all[index];
+  }
+
+  std::optional<std::size_t> number(const json& object, const char* name) const {
+    const auto found = object.find(name);
+    if (found == object.end()) return std::nullopt;
+    return whole(*found, name);
+  }
+
+  std::size_t whole(const json& value, std::string_view name) const {
+    if (!value.is_number_unsigned()) fail(message(name, ": a whole number expected"));
+    return value.get<std::size_t>();
+  }
+
+  std::vector<std::size_t> roots(const json& nodes) const {
+    std::vector<std::size_t> result;
+    if (!list(root_, "scenes").empty()) {
+      const json& scene = element("scenes", number(root_, "scene").value_or(0));
+      for (const json& node : list(scene, "nodes")) result.push_back(whole(node, "scene"));
+      return result;
+    }
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const json& node : nodes) {
+      for (const json& child : list(node, "children")) {
+        const std::size_t index = whole(child, "children");
+        if (index < nodes.size()) is_child[index] = true;
+      }
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (!is_child[i]) result.push_back(i);
+    return result;
+  }
+
+  void visit(std::size_t index, const Eigen::Affine3d& world_from_parent, int depth) {
+    const json& node = element("nodes", index);
+    if (visited_[index] || depth > 1000) fail("the nodes are not a tree");
+    visited_[index] = true;
+    const Eigen::Affine3d world_from_node = world_from_parent * transformation(node);
+    if (const auto shape = number(node, "mesh"))
+      add_mesh(element("meshes", *shape), node, world_from_node);
+    for (const json& child : list(node, "children"))
+      visit(whole(child, "children"), world_from_node, depth + 1);
+  }
+
+  template <std::size_t N>
+  std::array<double, N> numbers(const json& node,
+                                const char* name,
+                                std::array<double, N> values) const {
+    const json& found = list(node, name);
+    if (found.empty()) return values;
+    if (found.size() != N) fail(message(name, ": ", N, " numbers expected"));
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!found[i].is_number()) fail(message(name, ": numbers expected"));
+      values[i] = found[i].get<double>();
+    }
+    return values;
+  }
+
+  Eigen::Affine3d transformation(const json& node) const {
+    if (node.contains("matrix")) {
+      const auto m = numbers<16>(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+      Eigen::Affine3d result;
+      for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+          result.matrix()(row, column) = m[static_cast<std::size_t>(4 * column + row)];
+      return result;
+    }
+    const auto t = numbers<3>(node, "translation", {0, 0, 0});
+    const auto q = numbers<4>(node, "rotation", {0, 0, 0, 1});
+    const auto s = numbers<3>(node, "scale", {1, 1, 1});
+    return Eigen::Translation3d(t[0], t[1], t[2]) *
+           Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized() *
+           Eigen::Scaling(s[0], s[1], s[2]);
+  }
+
+  void add_mesh(const json& shape, const json& node, const Eigen::Affine3d& world_from_mesh) {
+    const auto label = static_cast<std::uint32_t>(content_.label_names.size());
+    const auto named = [](const json& o) {
+      const auto name = o.find("name");
+      return name != o.end() && name->is_string() ? name->get<std::string>() : std::string();
+    };
+    content_.label_names.push_back(named(node).empty() ? named(shape) : named(node));
+    for (const json& primitive : list(shape, "primitives")) {
+      const auto attributes = primitive.find("attributes");
+      if (attributes == primitive.end() || !attributes->is_object())
+        fail("a primitive without attributes");
+      const auto position = number(*attributes, "POSITION");
+      if (!position) continue;
+      add_primitive(primitive, *position, number(*attributes, "COLOR_0"), world_from_mesh, label);
+    }
+  }
+
+  void add_primitive(const json& primitive,
+                     std::size_t position,
+                     std::optional<std::size_t> color,
+                     const Eigen::Affine3d& world_from_mesh,
+                     std::uint32_t label) {
+    const std::size_t mode = number(primitive, "mode").value_or(triangles);
+    const bool is_cloud = mode == points;
+    if (!is_cloud && (mode < triangles || mode > fan)) return;  // lines
+    std::vector<Eigen::Vector3d>& to = is_cloud ? content_.points : content_.vertices;
+    const std::size_t first = to.size();
+    const accessor source = open(position, 3, true);
+    if (source.n > max_vertices - first) fail("more than 2^28 vertices");
+    for (std::size_t i = 0; i < source.n; ++i) {
+      Eigen::Vector3d p;
+      for (int k = 0; k < 3; ++k) p[k] = source.value(i, static_cast<std::size_t>(k));
+      to.push_back(world_from_mesh * p);
+    }
+    if (is_cloud) {
+      add_colors(color, source.n);
+    } else {
+      add_triangles(indices(primitive, source.n), mode, first, label);
+    }
+  }
+
+  void add_colors(std::optional<std::size_t> color, std::size_t n) {
+    content_.colors.resize(content_.points.size(), {0, 0, 0});
+    if (!color) return;
+    const accessor source = open(*color, 3, false);
+    if (source.n != n) fail(message("COLOR_0: ", n, " colours expected, found ", source.n));
+    const double unit = source.type == 5126 ? 255 : source.type == 5123 ? 1 / 257.0 : 1;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        content_.colors[content_.colors.size() - n + i][k] =
+            static_cast<std::uint8_t>(std::clamp(source.value(i, k) * unit, 0.0, 255.0) + 0.5);
+  }
+
+  std::vector<std::uint32_t> indices(const json& primitive, std::size_t n_vertices) const {
+    std::vector<std::uint32_t> result;
+    if (const auto index = number(primitive, "indices")) {
+      const accessor source = open(*index, 1, false);
+      for (std::size_t i = 0; i < source.n; ++i) {
+        const double value = source.value(i, 0);
+        if (!(value < static_cast<double>(n_vertices)))
+          fail(message("one of ", n_vertices, " vertices expected, found index ", value));
+        result.push_back(static_cast<std::uint32_t>(value));
+      }
+    } else {
+      for (std::size_t i = 0; i < n_vertices; ++i) result.push_back(static_cast<std::uint32_t>(i));
+    }
+    return result;
+  }
+
+  void add_triangles(const std::vector<std::uint32_t>& corners,
+                     std::size_t mode,
+                     std::size_t first,
+                     std::uint32_t label) {
+    const auto vertex = [&](std::size_t i) {
+      return static_cast<std::uint32_t>(first + corners[i]);
+    };
+    const std::size_t step = mode == strip || mode == fan ? 1 : 3;
+    for (std::size_t i = 0; i + 2 < corners.size(); i += step) {
+      const bool flipped = mode == strip && i % 2 == 1;
+      const std::size_t a = mode == fan ? 0 : i;
+      content_.triangles.push_back(
+          {vertex(a), vertex(flipped ? i + 2 : i + 1), vertex(flipped ? i + 1 : i + 2)});
+      content_.labels.push_back(label);
+    }
+  }
+
+  /// A list of tuples in the binary chunk, checked against its end.
+  struct accessor {
+    const char* data;
+    std::size_t n, stride, type, type_bytes;
+
+    double value(std::size_t i, std::size_t k) const {
+      const char* at = data + i * stride + k * type_bytes;
+      switch (type) {
+        case 5121:
+          return load<std::uint8_t>(at);
+        case 5123:
+          return load<std::uint16_t>(at);
+        case 5125:
+          return load<std::uint32_t>(at);
+        default:
+          return static_cast<double>(load<float>(at));
+      }
+    }
+  };
+
+  accessor open(std::size_t index, std::size_t components, bool must_be_float) const {
+    const json& a = element("accessors", index);
+    const auto view_index = number(a, "bufferView");
+    if (a.contains("sparse") || !view_index) fail("sparse or empty accessors are not supported");
+    const json& view = element("bufferViews", *view_index);
+    if (number(view, "buffer").value_or(0) != 0 ||
+        (!list(root_, "buffers").empty() && list(root_, "buffers")[0].contains("uri")))
+      fail("a buffer outside of the file is not supported");
+    accessor result{};
+    result.type = number(a, "componentType").value_or(0);
+    result.type_bytes = result.type == 5121 ? 1u : result.type == 5123 ? 2u : 4u;
+    const bool known =
+        result.type == 5121 || result.type == 5123 || result.type == 5125 || result.type == 5126;
+    if (!known || (must_be_float && result.type != 5126))
+      fail(message("numbers of type ", result.type, " are not supported"));
+    result.n = number(a, "count").value_or(0);
+    const std::string kind = a.contains("type") && a["type"].is_string() ? a["type"] : "";
+    const std::size_t found = kind == "SCALAR" ? 1u
+                              : kind == "VEC3" ? 3u
+                              : kind == "VEC4" ? 4u
+                                               : 0u;
+    if (found < components) fail(message("tuples of ", components, " expected, found ", kind));
+    const std::size_t tuple = found * result.type_bytes;
+    result.stride = number(view, "byteStride").value_or(tuple);
+    const std::size_t begin = number(view, "byteOffset").value_or(0);
+    const std::size_t offset = number(a, "byteOffset").value_or(0);
+    const bool fits = begin <= buffer_.size() && offset <= buffer_.size() - begin &&
+                      result.stride >= tuple &&
+                      (result.n == 0 ||
+                       (tuple <= buffer_.size() - begin - offset &&
+                        result.n - 1 <= (buffer_.size() - begin - offset - tuple) / result.stride));
+    if (!fits) fail(message("accessor ", index, " leads beyond the end of the file"));
+    result.data = buffer_.data() + begin + offset;
+    return result;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("glb: ", what));
+  }
+
+  std::filesystem::path path_;
+  json root_;
+  std::string_view buffer_;
+  std::vector<bool> visited_;
+  glb_content content_;
+};
+
+inline glb_content read_glb(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return glb_reader(bytes, path).read();
+}
+
+}  // namespace detail
+
+inline mesh::mesh read_glb_mesh(const std::filesystem::path& path) {
+  auto content = detail::read_glb(path);
+  auto floats = to_floats(content.vertices);
+  mesh::mesh result{.origin = floats.origin,
+                    .vertices = std::move(floats.points),
+                    .triangles = std::move(content.triangles),
+                    .labels = std::move(content.labels),
+                    .label_names = std::move(content.label_names)};
+  if (result.triangles.empty()) result.warnings.push_back("no triangles");
+  if (auto warning = non_finite_warning(result.vertices, "vertices"))
+    result.warnings.push_back(std::move(*warning));
+  return result;
+}
+
+inline cloud::cloud read_glb_cloud(const std::filesystem::path& path) {
+  auto content = detail::read_glb(path);
+  const bool has_points = !content.points.empty();
+  auto floats = to_floats(has_points ? content.points : content.vertices);
+  cloud::cloud result{.origin = floats.origin, .points = std::move(floats.points)};
+  if (has_points) result.colors = std::move(content.colors);
+  if (result.empty()) result.warnings.push_back("no points");
+  if (auto warning = non_finite_warning(result.points, "points"))
+    result.warnings.push_back(std::move(*warning));
+  return result;
+}
+
+}  // namespace aib::io
+#endif
+
 // aib/io/cloud.hpp
+
+#if defined(AIB_WITH_JSON)
+#endif
 
 namespace aib::io {
 
 struct cloud_options {
   up_axis up = up_axis::z;                 ///< axis that points up in the file
   splat_rule splats = splat_rule::refuse;  ///< PLY files of 3D Gaussian splats
+  std::string key = {};                    ///< NPZ: name of the array; empty: see read_npz_cloud
 };
 
-/// Reads a cloud; the format is told from the content, then from the extension. Of a mesh file the
-/// vertices are read.
+/// Reads a cloud; the format is told from the content, then from the extension: PLY, PCD, XYZ, CSV,
+/// PTS, LAS, NPY, NPZ, GLB. Of a mesh file (PLY, OBJ, GLB) the vertices are read.
 ///
 /// Throws format_error where the format is not known or the file is damaged, io_error where it
 /// cannot be read.
-inline cloud::cloud read_cloud(const std::filesystem::path& path,
-                               const cloud_options& options = {}) {
-  cloud::cloud result;
+cloud::cloud read_cloud(const std::filesystem::path& path, const cloud_options& options = {});
+
+namespace detail {
+
+inline cloud::cloud vertices_of(mesh::mesh mesh) {
+  return {.origin = mesh.origin,
+          .points = std::move(mesh.vertices),
+          .warnings = std::move(mesh.warnings)};
+}
+
+inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
+                                      const cloud_options& options) {
   switch (kind_of(path)) {
     case file_kind::ply:
-      result = read_ply_cloud(path, options.splats);
-      break;
+      return read_ply_cloud(path, options.splats);
+    case file_kind::pcd:
+      return read_pcd(path);
+    case file_kind::las:
+      return read_las(path);
+    case file_kind::text_points:
+      return read_xyz(path);
+    case file_kind::obj:
+      return vertices_of(read_obj(path));
+    case file_kind::npy:
+      return read_npy_cloud(path);
+    case file_kind::npz:
+#if defined(AIB_WITH_NPZ)
+      return read_npz_cloud(path, options.key);
+#else
+      throw format_error(path, "this build of aib reads no NPZ; build it with zlib");
+#endif
+    case file_kind::glb:
+#if defined(AIB_WITH_JSON)
+      return read_glb_cloud(path);
+#else
+      throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
+#endif
+    case file_kind::stl:
+      throw format_error(path,
+                         "a cloud expected, found an STL mesh; read it as a mesh and sample it");
+    case file_kind::e57:
+      throw format_error(path,
+                         "E57 is not supported; convert it with CloudCompare or "
+                         "`pdal translate in.e57 out.ply`");
     default:
-      throw format_error(path, "a cloud expected: PLY");
+      throw format_error(path, "a cloud expected: PLY, PCD, XYZ, CSV, PTS, LAS, NPY, NPZ or GLB");
   }
+}
+
+}  // namespace detail
+
+inline cloud::cloud read_cloud(const std::filesystem::path& path, const cloud_options& options) {
+  cloud::cloud result = detail::read_stored_cloud(path, options);
   turn_z_up(result, options.up);
   return result;
 }
@@ -8303,6 +13324,9 @@ struct colmap_model {
   }
 };
 
+/// How a model's files are written.
+enum class colmap_encoding { binary, text };
+
 /// What of a model is read.
 enum class colmap_content {
   everything,
@@ -8337,16 +13361,16 @@ namespace colmap::detail {
 
 namespace fs = std::filesystem;
 
-enum class encoding { binary, text };
-
 inline bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
 }
 
-inline std::optional<encoding> find_encoding(const fs::path& folder) {
-  if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin")) return encoding::binary;
-  if (is_there(folder / "cameras.txt") && is_there(folder / "images.txt")) return encoding::text;
+inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
+  if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin"))
+    return colmap_encoding::binary;
+  if (is_there(folder / "cameras.txt") && is_there(folder / "images.txt"))
+    return colmap_encoding::text;
   return std::nullopt;
 }
 
@@ -8367,10 +13391,10 @@ inline std::vector<fs::path> numbered_models(const fs::path& folder) {
 /// The three or five files of a model, whichever way they are written.
 class model_files {
  public:
-  model_files(fs::path folder, encoding kind) : folder_(std::move(folder)), kind_(kind) {}
+  model_files(fs::path folder, colmap_encoding kind) : folder_(std::move(folder)), kind_(kind) {}
 
   [[nodiscard]] fs::path file(const char* stem) const {
-    return folder_ / (std::string(stem) + (kind_ == encoding::binary ? ".bin" : ".txt"));
+    return folder_ / (std::string(stem) + (kind_ == colmap_encoding::binary ? ".bin" : ".txt"));
   }
   [[nodiscard]] auto cameras() const {
     return read("cameras", binary::read_cameras, text::read_cameras);
@@ -8394,11 +13418,11 @@ class model_files {
   Records read(const char* stem,
                Records (*read_binary)(const fs::path&),
                Records (*read_text)(const fs::path&)) const {
-    return kind_ == encoding::binary ? read_binary(file(stem)) : read_text(file(stem));
+    return kind_ == colmap_encoding::binary ? read_binary(file(stem)) : read_text(file(stem));
   }
 
   fs::path folder_;
-  encoding kind_;
+  colmap_encoding kind_;
 };
 
 /// camera_from_world of each image that the rigs and frames pose.
@@ -8479,7 +13503,9 @@ inline void read_points(colmap_model& model, const model_files& files, colmap_co
   model.track_lengths = std::move(p.track_lengths);
 }
 
-inline colmap_model read_model(const fs::path& folder, encoding kind, colmap_content content) {
+inline colmap_model read_model(const fs::path& folder,
+                               colmap_encoding kind,
+                               colmap_content content) {
   const model_files files(folder, kind);
   colmap_model model;
   model.path = folder;
@@ -8617,6 +13643,216 @@ inline depth::depth_map read_colmap_depth(const std::filesystem::path& path) {
   if (size[2] != 1)
     throw format_error(path, message("colmap map: 1 channel expected, found ", size[2]));
   return {read_float_pixels(file, at, size[0], size[1], std::endian::little)};
+}
+
+}  // namespace aib::io
+
+// aib/io/posed_images.hpp
+
+namespace aib::io {
+
+/// Size of images in pixels, for files that do not say it; 0: not known.
+struct image_extent {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+};
+
+/// Poses with the intrinsics of each, from a file that has both.
+struct posed_images {
+  pose::trajectory trajectory = {};
+  std::vector<math::camera> cameras = {};  ///< one a pose, or none where the file has none
+};
+
+}  // namespace aib::io
+
+// aib/io/colmap_write.hpp
+
+namespace aib::io {
+
+/// Writes cameras, images and points3D into a folder, which is made where it is not there. Images
+/// have no observations and points no tracks; poses that are not registered are left out.
+///
+/// Throws argument_error where names, image or camera ids do not fit the poses, an image has no
+/// name or one with a line end, or no pose is registered.
+void write_colmap(const std::filesystem::path& folder,
+                  const colmap_model& model,
+                  colmap_encoding encoding = colmap_encoding::binary);
+
+/// A model of the images, numbered from 1; equal intrinsics become one camera.
+/// Throws argument_error where the images have no names or no cameras.
+[[nodiscard]] colmap_model make_colmap_model(const posed_images& images);
+
+namespace colmap::detail {
+
+inline bool same_camera(const math::camera& a, const math::camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         a.parameters == b.parameters;
+}
+
+inline void check_writable(const colmap_model& m) {
+  const pose::trajectory& t = m.trajectory;
+  if (t.names.size() != t.size() || m.image_ids.size() != t.size() ||
+      m.camera_ids.size() != t.size()) {
+    throw argument_error(message("write_colmap: ", t.size(), " poses, ", t.names.size(), " names, ",
+                                 m.image_ids.size(), " image ids, ", m.camera_ids.size(),
+                                 " camera ids: one of each a pose expected"));
+  }
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (t.names[i].empty() ||
+        t.names[i].find_first_of(std::string_view("\n\r\0", 3)) != std::string::npos)
+      throw argument_error(message("write_colmap: pose ", i, " has a name that cannot be written"));
+    if (!m.cameras.contains(m.camera_ids[i]))
+      throw argument_error(message("write_colmap: no camera ", m.camera_ids[i]));
+  }
+}
+
+/// Puts numbers and names one after another, as text lines or as bytes.
+class record_writer {
+ public:
+  explicit record_writer(colmap_encoding encoding) : encoding_(encoding) {}
+
+  void begin(std::uint64_t n_records, std::string_view comment) {
+    if (is_text()) {
+      out_ += message("# ", comment, '\n');
+    } else {
+      store(out_, n_records);
+    }
+  }
+  template <class Number>
+  void put(Number number) {
+    if (is_text()) {
+      out_ += message(number, ' ');
+    } else {
+      store(out_, number);
+    }
+  }
+  void put_model(math::camera_model model) {
+    if (is_text()) {
+      out_ += message(math::info(model).name, ' ');
+    } else {
+      store(out_, static_cast<std::int32_t>(model));
+    }
+  }
+  void put_name(const std::string& name) {
+    out_ += name;
+    if (!is_text()) out_ += '\0';
+  }
+  /// An empty list: in text, the line's end says so.
+  void put_empty_list() {
+    if (!is_text()) store(out_, std::uint64_t{0});
+  }
+  void end_line() {
+    if (is_text()) out_ += '\n';
+  }
+  void save(const fs::path& folder, const char* stem) const {
+    write_file(folder / (std::string(stem) + (is_text() ? ".txt" : ".bin")), out_);
+  }
+
+ private:
+  [[nodiscard]] bool is_text() const { return encoding_ == colmap_encoding::text; }
+
+  colmap_encoding encoding_;
+  std::string out_;
+};
+
+inline void write_cameras(const fs::path& folder, const colmap_model& m, colmap_encoding encoding) {
+  record_writer out(encoding);
+  out.begin(m.cameras.size(), "CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]");
+  for (const auto& [id, camera] : m.cameras) {
+    if (camera.parameters.size() != math::info(camera.model).n_parameters) {
+      throw argument_error(message("write_colmap: camera ", id, ": ",
+                                   math::info(camera.model).n_parameters,
+                                   " parameters expected, found ", camera.parameters.size()));
+    }
+    out.put(id);
+    out.put_model(camera.model);
+    out.put(camera.width);
+    out.put(camera.height);
+    for (const double parameter : camera.parameters) out.put(parameter);
+    out.end_line();
+  }
+  out.save(folder, "cameras");
+}
+
+inline void write_images(const fs::path& folder, const colmap_model& m, colmap_encoding encoding) {
+  const auto& poses = m.trajectory.world_from_camera;
+  const auto registered = std::count_if(poses.begin(), poses.end(),
+                                        [](const math::rigid3& p) { return p.is_finite(); });
+  if (registered == 0) throw argument_error("write_colmap: no registered pose to write");
+  record_writer out(encoding);
+  out.begin(static_cast<std::uint64_t>(registered),
+            "IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; then POINTS2D[]");
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i].is_finite()) continue;
+    const math::rigid3 camera_from_world = poses[i].inverse();
+    const math::quaternion q = math::quaternion_from(camera_from_world.rotation);
+    out.put(m.image_ids[i]);
+    for (const double number : {q.w, q.x, q.y, q.z}) out.put(number);
+    for (const double number : camera_from_world.translation) out.put(number);
+    out.put(m.camera_ids[i]);
+    out.put_name(m.trajectory.names[i]);
+    out.end_line();
+    out.put_empty_list();
+    out.end_line();
+  }
+  out.save(folder, "images");
+}
+
+inline void write_points(const fs::path& folder, const colmap_model& m, colmap_encoding encoding) {
+  constexpr double unknown_error = -1;
+  const auto n = static_cast<std::uint64_t>(m.points.size());
+  record_writer out(encoding);
+  out.begin(n, "POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[]");
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d p = m.points.position(i);
+    out.put(static_cast<std::uint64_t>(i + 1));
+    for (const double number : p) out.put(number);
+    const cloud::color color = m.points.colors.empty() ? cloud::color{} : m.points.colors[i];
+    for (const std::uint8_t channel : color) out.put(channel);
+    out.put(m.point_errors_px.empty() ? unknown_error : m.point_errors_px[i]);
+    out.put_empty_list();
+    out.end_line();
+  }
+  out.save(folder, "points3D");
+}
+
+}  // namespace colmap::detail
+
+inline void write_colmap(const std::filesystem::path& folder,
+                         const colmap_model& model,
+                         colmap_encoding encoding) {
+  colmap::detail::check_writable(model);
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code) throw io_error(folder, message("cannot create: ", code.message()));
+  colmap::detail::write_cameras(folder, model, encoding);
+  colmap::detail::write_images(folder, model, encoding);
+  colmap::detail::write_points(folder, model, encoding);
+}
+
+inline colmap_model make_colmap_model(const posed_images& images) {
+  pose::check(images.trajectory);
+  const std::size_t n = images.trajectory.size();
+  if (images.trajectory.names.empty() || images.cameras.size() != n) {
+    throw argument_error(message("make_colmap_model: names and cameras for ", n,
+                                 " poses expected, found ", images.trajectory.names.size(),
+                                 " names and ", images.cameras.size(), " cameras"));
+  }
+  colmap_model model;
+  model.trajectory = images.trajectory;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto known =
+        std::find_if(model.cameras.begin(), model.cameras.end(), [&](const auto& entry) {
+          return colmap::detail::same_camera(entry.second, images.cameras[i]);
+        });
+    const auto id = known != model.cameras.end()
+                        ? known->first
+                        : static_cast<std::uint32_t>(model.cameras.size() + 1);
+    model.cameras.try_emplace(id, images.cameras[i]);
+    model.image_ids.push_back(static_cast<std::uint32_t>(i + 1));
+    model.camera_ids.push_back(id);
+  }
+  return model;
 }
 
 }  // namespace aib::io
@@ -8764,24 +14000,6 @@ inline void write_kitti(const std::filesystem::path& path, const pose::trajector
 
 }  // namespace aib::io
 
-// aib/io/posed_images.hpp
-
-namespace aib::io {
-
-/// Size of images in pixels, for files that do not say it; 0: not known.
-struct image_extent {
-  std::uint64_t width = 0;
-  std::uint64_t height = 0;
-};
-
-/// Poses with the intrinsics of each, from a file that has both.
-struct posed_images {
-  pose::trajectory trajectory = {};
-  std::vector<math::camera> cameras = {};  ///< one a pose, or none where the file has none
-};
-
-}  // namespace aib::io
-
 // aib/io/da3_streaming.hpp
 
 namespace aib::io {
@@ -8820,6 +14038,210 @@ namespace aib::io {
                                            " poses expected, found ", images.cameras.size()));
   }
   return images;
+}
+
+}  // namespace aib::io
+
+// aib/io/dmap.hpp
+
+namespace aib::io {
+
+/// Reads the depth of an OpenMVS .dmap file: planar, 0 where there is none. Both layouts, "DR"
+/// (float) and "D2" (half times a power of two); normals, confidences and views are passed over.
+///
+/// Throws format_error where the file is damaged or holds no depth.
+/// Source: OpenMVS, libs/MVS/Interface.h.
+depth::depth_map read_dmap(const std::filesystem::path& path);
+
+namespace detail {
+
+struct dmap_header {
+  bool is_half = false;
+  int exponent = 0;  ///< halves are depth / 2^exponent
+  std::size_t width = 0, height = 0;
+};
+
+inline dmap_header read_dmap_header(byte_reader& in) {
+  dmap_header header;
+  const std::string_view tag = in.take(2, "dmap: tag");
+  if (tag != "DR" && tag != "D2") in.fail("dmap: the tag DR or D2 expected at the begin");
+  header.is_half = tag == "D2";
+  constexpr std::uint8_t has_depth = 1;
+  if ((in.read<std::uint8_t>("dmap: type") & has_depth) == 0) in.fail("dmap: no depth in the file");
+  const auto exponent = in.read<std::int8_t>("dmap: exponent");
+  if (header.is_half) header.exponent = exponent;
+  in.take(8, "dmap: size of the image");
+  header.width = in.read<std::uint32_t>("dmap: width");
+  header.height = in.read<std::uint32_t>("dmap: height");
+  in.take(header.is_half ? 12 : 8, "dmap: range");
+  in.take(in.read<std::uint16_t>("dmap: length of the name"), "dmap: name");
+  in.take(4 * in.read_count<std::uint32_t>(4, "dmap: number of views"), "dmap: views");
+  in.take(8 * (9 + 9 + 3), "dmap: camera");
+  return header;
+}
+
+}  // namespace detail
+
+inline depth::depth_map read_dmap(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  byte_reader in(bytes, path);
+  const auto header = detail::read_dmap_header(in);
+  const std::size_t pixel = header.is_half ? 2 : 4;
+  if (header.width == 0 || header.height == 0 || header.width > in.left() / pixel / header.height) {
+    in.fail(message("dmap: ", header.width, "x", header.height, " depths expected, ",
+                    in.left() / pixel, " in the file"));
+  }
+  depth::depth_map result{raster::image<float>(header.width, header.height)};
+  const char* from = in.take(pixel * result.values.size(), "dmap: depth").data();
+  for (float& depth : result.values) {
+    depth = header.is_half ? std::ldexp(float_from_half(load<std::uint16_t>(from)), header.exponent)
+                           : load<float>(from);
+    from += pixel;
+  }
+  return result;
+}
+
+}  // namespace aib::io
+
+// aib/io/pfm.hpp
+
+namespace aib::io {
+
+/// Reads a gray PFM: "Pf", width, height, scale, then floats row by row from the bottom. A negative
+/// scale means little endian; its size is ignored as everybody does, with a warning where it is
+/// not 1. Bytes after the pixels are ignored.
+///
+/// Throws format_error where the file is damaged or has colours ("PF").
+/// Source: Debevec, "PFM Portable FloatMap Image Format".
+depth::depth_map read_pfm(const std::filesystem::path& path);
+
+/// Writes a gray PFM in the machine's byte order, scale 1.
+void write_pfm(const std::filesystem::path& path, raster::view<const float> depth);
+
+namespace detail {
+
+/// The four words of the header; one blank parts the last from the pixels.
+class pfm_header {
+ public:
+  explicit pfm_header(const input_file& file) : path_(file.path()) {
+    text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 256)));
+    file.read_at(0, text_.data(), text_.size());
+    const std::string_view tag = word("the tag Pf");
+    if (tag == "PF") fail("a gray map (Pf) expected, found colours (PF)");
+    if (tag != "Pf") fail("the tag Pf expected at the begin");
+    width = number<std::size_t>("the width");
+    height = number<std::size_t>("the height");
+    const auto scale = number<double>("the scale");
+    if (!std::isfinite(scale) || scale == 0) fail("a scale other than 0 expected");
+    order = scale < 0 ? std::endian::little : std::endian::big;
+    factor = std::abs(scale);
+  }
+
+  std::size_t width = 0, height = 0;
+  std::endian order = std::endian::little;
+  double factor = 1;
+  [[nodiscard]] std::size_t end() const { return at_; }
+
+ private:
+  std::string_view word(std::string_view what) {
+    constexpr std::string_view blank = " \t\r\n";
+    const std::size_t begin = text_.find_first_not_of(blank, at_);
+    const std::size_t end = begin == std::string::npos ? begin : text_.find_first_of(blank, begin);
+    if (end == std::string::npos) fail(message(what, " expected, the header ends"));
+    at_ = end + 1;
+    return std::string_view(text_).substr(begin, end - begin);
+  }
+
+  template <class Number>
+  Number number(std::string_view what) {
+    const std::string_view found = word(what);
+    const auto value = parse<Number>(found);
+    if (!value) fail(message(what, " expected, found \"", found, "\""));
+    return *value;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("pfm: ", what));
+  }
+
+  std::filesystem::path path_;
+  std::string text_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace detail
+
+inline depth::depth_map read_pfm(const std::filesystem::path& path) {
+  const input_file file(path);
+  const detail::pfm_header header(file);
+  depth::depth_map result{
+      read_float_pixels(file, header.end(), header.width, header.height, header.order)};
+  raster::image<float>& image = result.values;
+  for (std::size_t y = 0; y < image.height() / 2; ++y)
+    std::swap_ranges(&image(0, y), &image(0, y) + image.width(), &image(0, image.height() - 1 - y));
+  if (header.factor != 1)
+    result.warnings.push_back(message("the scale ", header.factor, " in the header was ignored"));
+  return result;
+}
+
+inline void write_pfm(const std::filesystem::path& path, raster::view<const float> depth) {
+  std::string bytes = message("Pf\n", depth.width, " ", depth.height, "\n-1.0\n");
+  for (std::size_t y = depth.height; y-- > 0;)
+    for (const float value : depth.row(y)) store(bytes, value);
+  write_file(path, bytes);
+}
+
+}  // namespace aib::io
+
+// aib/io/range_depth.hpp
+
+namespace aib::io {
+
+/// Turns distances along the rays of pixel centres into planar depth, in place.
+///
+/// camera   intrinsics without distortion; where its size is another than that of the map, they are
+///          scaled with each side
+///
+/// Throws argument_error for a camera with distortion or without a size.
+inline void planar_from_range(raster::view<float> range, const math::camera& camera) {
+  using enum math::camera_model;
+  if (camera.model != pinhole && camera.model != simple_pinhole)
+    throw argument_error(message("range: a pinhole camera expected, found ",
+                                 math::info(camera.model).name, "; undistort the map first"));
+  if (camera.width == 0 || camera.height == 0 || !(camera.fx() > 0) || !(camera.fy() > 0))
+    throw argument_error("range: a camera with a size and focal lengths > 0 expected");
+  const double scale_x = static_cast<double>(camera.width) / static_cast<double>(range.width);
+  const double scale_y = static_cast<double>(camera.height) / static_cast<double>(range.height);
+  for (std::size_t y = 0; y < range.height; ++y) {
+    const double v = ((static_cast<double>(y) + 0.5) * scale_y - camera.cy()) / camera.fy();
+    for (std::size_t x = 0; x < range.width; ++x) {
+      const double u = ((static_cast<double>(x) + 0.5) * scale_x - camera.cx()) / camera.fx();
+      float& value = range(x, y);
+      value = static_cast<float>(static_cast<double>(value) / std::sqrt(1 + u * u + v * v));
+    }
+  }
+}
+
+}  // namespace aib::io
+
+// aib/io/raw_depth.hpp
+
+namespace aib::io {
+
+/// Reads depth that has no header: little-endian floats row by row from the top, as ETH3D has them
+/// (its files end in .JPG all the same, infinite where there is no depth). The size is that of the
+/// camera. Throws format_error where the file is not exactly that large.
+inline depth::depth_map read_raw_depth(const std::filesystem::path& path,
+                                       std::size_t width,
+                                       std::size_t height) {
+  const input_file file(path);
+  depth::depth_map result{read_float_pixels(file, 0, width, height, std::endian::little)};
+  if (file.size() != result.values.size() * sizeof(float)) {
+    throw format_error(
+        path, message(width, "x", height, " floats are ", result.values.size() * sizeof(float),
+                      " bytes, the file has ", file.size()));
+  }
+  return result;
 }
 
 }  // namespace aib::io
@@ -9619,25 +15041,6 @@ class exr_block_decoder {
 }  // namespace aib::io::detail
 #endif
 
-// aib/io/half.hpp
-
-namespace aib::io {
-
-/// The value of an IEEE 754 half-precision number from its bits; exact.
-[[nodiscard]] constexpr float float_from_half(std::uint16_t bits) {
-  const std::uint32_t sign = std::uint32_t{bits & 0x8000u} << 16;
-  const std::uint32_t exponent = (bits >> 10) & 0x1fu;
-  const std::uint32_t mantissa = bits & 0x3ffu;
-  if (exponent == 0) {  // zero and subnormals: mantissa * 2^-24
-    const float magnitude = static_cast<float>(mantissa) * 0x1p-24f;
-    return sign != 0 ? -magnitude : magnitude;
-  }
-  const std::uint32_t wide = exponent == 31 ? 255 : exponent + (127 - 15);
-  return std::bit_cast<float>(sign | (wide << 23) | (mantissa << 13));
-}
-
-}  // namespace aib::io
-
 // aib/io/exr_channel.hpp
 
 #if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
@@ -9902,6 +15305,10 @@ struct exr_options {
 /// read (see read_exr_header, read_exr_channel).
 depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options = {});
 
+/// Names of all channels, with the name of their part where it has one.
+/// Throws format_error where the header is damaged.
+std::vector<std::string> exr_channel_names(const std::filesystem::path& path);
+
 struct exr_write_options {
   std::string channel = "Z";
   exr_compression compression = exr_compression::zip;  ///< none, zips or zip
@@ -10049,6 +15456,15 @@ inline std::size_t clear_background(raster::image<float>& image, float from) {
 
 }  // namespace detail
 
+inline std::vector<std::string> exr_channel_names(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const exr_part& part : read_exr_header(input_file(path)).parts) {
+    for (const exr_channel_info& channel : part.channels)
+      names.push_back(part.name.empty() ? channel.name : part.name + "." + channel.name);
+  }
+  return names;
+}
+
 inline depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options) {
   const input_file file(path);
   const exr_header header = read_exr_header(file);
@@ -10194,83 +15610,414 @@ inline void write_exr(const std::filesystem::path& path,
 }  // namespace aib::io
 #endif
 
+// aib/io/png.hpp
+
+#if defined(AIB_WITH_PNG)
+#include <spng.h>
+
+namespace aib::io {
+
+/// What the header of a PNG file says.
+struct png_header {
+  std::size_t width = 0, height = 0;
+  int bits = 0;  ///< of a channel
+  bool is_gray = false, has_palette = false, has_alpha = false;
+};
+
+/// Needs libspng. All PNG functions throw format_error where a file is damaged, is larger than 2^27
+/// pixels, or has not the pixels that are asked for.
+png_header read_png_header(const std::filesystem::path& path);
+
+/// The stored numbers of a gray PNG of 1 to 16 bits, or the indices of a palette: labels, or depth
+/// of 16 bits. Refuses colours and transparency.
+raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path);
+
+/// Any PNG as 8-bit red, green, blue; transparency is dropped.
+raster::color_image read_png_color(const std::filesystem::path& path);
+
+/// Any PNG as 8-bit red, green, blue, alpha.
+raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path);
+
+/// Writes gray (8 or 16 bits), rgb or rgba pixels, whichever the type is. Throws argument_error for
+/// an empty image, io_error where the file cannot be written.
+template <class Pixel>
+void write_png(const std::filesystem::path& path, raster::view<const Pixel> image);
+
+namespace detail {
+
+struct free_spng {
+  void operator()(spng_ctx* context) const { spng_ctx_free(context); }
+};
+
+/// An opened PNG file: header checked, pixels not yet read.
+class png_decoder {
+ public:
+  explicit png_decoder(const std::filesystem::path& path)
+      : path_(path), bytes_(read_file(path)), context_(spng_ctx_new(0)) {
+    constexpr std::uint32_t max_side = 1u << 20;
+    constexpr std::size_t max_chunk = std::size_t{1} << 26;
+    if (!context_) fail("no memory");
+    check(spng_set_image_limits(context_.get(), max_side, max_side));
+    check(spng_set_chunk_limits(context_.get(), max_chunk, max_chunk));
+    check(spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size()));
+    check(spng_get_ihdr(context_.get(), &ihdr_));
+    // Deflate expands at most 1032 times: more pixels than that were never in the file.
+    const std::uint64_t pixels = std::uint64_t{ihdr_.width} * ihdr_.height;
+    if (pixels > std::uint64_t{1} << 27 || pixels / 8 > 1100 * bytes_.size())
+      fail(message(ihdr_.width, "x", ihdr_.height, " pixels in a file of ", bytes_.size(),
+                   " bytes"));
+  }
+
+  [[nodiscard]] png_header header() const {
+    const bool gray = ihdr_.color_type == SPNG_COLOR_TYPE_GRAYSCALE ||
+                      ihdr_.color_type == SPNG_COLOR_TYPE_GRAYSCALE_ALPHA;
+    const bool alpha = ihdr_.color_type == SPNG_COLOR_TYPE_GRAYSCALE_ALPHA ||
+                       ihdr_.color_type == SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
+    return {ihdr_.width,
+            ihdr_.height,
+            ihdr_.bit_depth,
+            gray,
+            ihdr_.color_type == SPNG_COLOR_TYPE_INDEXED,
+            alpha};
+  }
+
+  /// Decodes into n bytes, which must be what the format takes.
+  void decode(spng_format format, void* to, std::size_t n) {
+    std::size_t needed = 0;
+    check(spng_decoded_image_size(context_.get(), format, &needed));
+    if (needed != n) fail("an unexpected size");
+    check(spng_decode_image(context_.get(), to, n, format, 0));
+  }
+
+  [[nodiscard]] std::size_t decoded_size(spng_format format) {
+    std::size_t needed = 0;
+    check(spng_decoded_image_size(context_.get(), format, &needed));
+    return needed;
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    throw format_error(path_, message("png: ", what));
+  }
+
+ private:
+  void check(int code) const {
+    if (code != 0) fail(spng_strerror(code));
+  }
+
+  std::filesystem::path path_;
+  std::string bytes_;
+  std::unique_ptr<spng_ctx, free_spng> context_;
+  spng_ihdr ihdr_ = {};
+};
+
+/// Samples of 1, 2, 4, 8 or 16 bits, the first in the highest bits, each row from a whole byte on.
+inline raster::image<std::uint16_t> unpack_samples(const std::vector<std::uint8_t>& packed,
+                                                   const png_header& header) {
+  raster::image<std::uint16_t> image(header.width, header.height);
+  const std::size_t bits = static_cast<std::size_t>(header.bits);
+  const std::size_t row_bytes = (header.width * bits + 7) / 8;
+  for (std::size_t y = 0; y < header.height; ++y) {
+    const std::uint8_t* row = packed.data() + y * row_bytes;
+    for (std::size_t x = 0; x < header.width; ++x) {
+      const std::size_t bit = x * bits;
+      image(x, y) =
+          static_cast<std::uint16_t>((row[bit / 8] >> (8 - bits - bit % 8)) & ((1u << bits) - 1));
+    }
+  }
+  return image;
+}
+
+template <class Pixel>
+constexpr int png_color_type() {
+  if constexpr (std::is_integral_v<Pixel>)
+    return SPNG_COLOR_TYPE_GRAYSCALE;
+  else if constexpr (std::tuple_size_v<Pixel> == 3)
+    return SPNG_COLOR_TYPE_TRUECOLOR;
+  else
+    return SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
+}
+
+}  // namespace detail
+
+inline png_header read_png_header(const std::filesystem::path& path) {
+  return detail::png_decoder(path).header();
+}
+
+inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path) {
+  detail::png_decoder decoder(path);
+  const png_header header = decoder.header();
+  if (!(header.is_gray || header.has_palette) || header.has_alpha)
+    decoder.fail("gray pixels without transparency expected, found colours or transparency");
+  if (header.bits == 16) {
+    raster::image<std::uint16_t> image(header.width, header.height);
+    decoder.decode(SPNG_FMT_PNG, image.data(), 2 * image.size());
+    return image;
+  }
+  std::vector<std::uint8_t> packed(decoder.decoded_size(SPNG_FMT_PNG));
+  decoder.decode(SPNG_FMT_PNG, packed.data(), packed.size());
+  return detail::unpack_samples(packed, header);
+}
+
+inline raster::color_image read_png_color(const std::filesystem::path& path) {
+  detail::png_decoder decoder(path);
+  raster::color_image image(decoder.header().width, decoder.header().height);
+  decoder.decode(SPNG_FMT_RGB8, image.data(), 3 * image.size());
+  return image;
+}
+
+inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path) {
+  detail::png_decoder decoder(path);
+  raster::image<std::array<std::uint8_t, 4>> image(decoder.header().width, decoder.header().height);
+  decoder.decode(SPNG_FMT_RGBA8, image.data(), 4 * image.size());
+  return image;
+}
+
+template <class Pixel>
+void write_png(const std::filesystem::path& path, raster::view<const Pixel> image) {
+  if (image.empty()) throw argument_error("io::write_png: an empty image");
+  std::vector<Pixel> pixels;
+  pixels.reserve(image.size());
+  for (std::size_t y = 0; y < image.height; ++y)
+    pixels.insert(pixels.end(), image.row(y).begin(), image.row(y).end());
+
+  const std::unique_ptr<spng_ctx, detail::free_spng> context(spng_ctx_new(SPNG_CTX_ENCODER));
+  spng_ihdr ihdr = {};
+  ihdr.width = static_cast<std::uint32_t>(image.width);
+  ihdr.height = static_cast<std::uint32_t>(image.height);
+  ihdr.bit_depth = std::is_same_v<Pixel, std::uint16_t> ? 16 : 8;
+  ihdr.color_type = static_cast<std::uint8_t>(detail::png_color_type<Pixel>());
+  std::size_t n = 0;
+  int code = context ? 0 : 1;
+  if (code == 0) code = spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
+  if (code == 0) code = spng_set_ihdr(context.get(), &ihdr);
+  if (code == 0)
+    code = spng_encode_image(context.get(), pixels.data(), pixels.size() * sizeof(Pixel),
+                             SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
+  const std::unique_ptr<void, decltype(&std::free)> bytes(
+      code == 0 ? spng_get_png_buffer(context.get(), &n, &code) : nullptr, &std::free);
+  if (code != 0 || !bytes) throw argument_error(message("io::write_png: ", spng_strerror(code)));
+  write_file(path, {static_cast<const char*>(bytes.get()), n});
+}
+
+}  // namespace aib::io
+#endif
+
 // aib/io/depth.hpp
 
 #if defined(AIB_WITH_EXR)
+#endif
+#if defined(AIB_WITH_PNG)
 #endif
 
 namespace aib::io {
 
 struct depth_options {
-  std::string channel = {};  ///< EXR: name of the channel; empty: chosen, see read_exr
-  double scale = 0;          ///< stored value of one unit of length; 0: that of the format
+  std::string channel = {};               ///< EXR: name of the channel; empty: see read_exr
+  std::string key = {};                   ///< NPZ: name of the array; empty: see read_array_frames
+  std::optional<std::size_t> index = {};  ///< NPY, NPZ of several frames: which one
+  /// Stored value of one unit of length: 1000 for millimetres, TUM 5000, KITTI 256.
+  /// 0: 1000 for PNG, 1 for all others.
+  double scale = 0;
   double max_depth = std::numeric_limits<double>::infinity();  ///< this and beyond becomes 0
   std::size_t width = 0, height = 0;  ///< size of the result by nearest neighbour; 0: the file's
   raster::nearest_rule rule = raster::nearest_rule::centre;
+  std::size_t raw_width = 0, raw_height = 0;      ///< files without header (ETH3D): their size
+  std::optional<math::camera> range_camera = {};  ///< the file holds distances along its rays
 };
+
+/// Reads a depth map; the format is told from the content, then from the extension: EXR, PFM, NPY,
+/// NPZ, 16-bit PNG, COLMAP .bin, OpenMVS .dmap, and headerless floats where their size is given.
+/// Planar depth; pixels without depth are 0 or not finite. What was removed, assumed or is in doubt
+/// stands in the warnings.
+///
+/// Throws format_error where the format is not known or the file is damaged, io_error where it
+/// cannot be read, argument_error where an option has no meaning.
+depth::depth_map read_depth(const std::filesystem::path& path, const depth_options& options = {});
+
+/// Reads all frames of an NPY or NPZ array; of any other file the one that it has.
+/// Throws as read_depth does.
+std::vector<depth::depth_map> read_depth_stack(const std::filesystem::path& path,
+                                               const depth_options& options = {});
+
+struct depth_write_options {
+  double scale = 1000;  ///< PNG: stored value of one unit of length
+};
+
+/// Writes a depth map in the format of the extension: .exr (float, ZIP), .pfm, .npy (float, H x W),
+/// .png (16 bits; what is not finite, not positive or beyond 65535 becomes 0).
+/// Throws argument_error for another extension.
+void write_depth(const std::filesystem::path& path,
+                 raster::view<const float> depth,
+                 const depth_write_options& options = {});
 
 namespace detail {
 
-inline depth::depth_map read_depth_as_stored(const std::filesystem::path& path,
-                                             const depth_options& options) {
-  switch (kind_of(path)) {
+inline depth::depth_map read_depth_array(const std::filesystem::path& path,
+                                         const depth_options& options) {
+  const array_frames frames = read_array_frames(path, options.key);
+  if (!options.index && frames.size() > 1)
+    throw argument_error(message(path.string(), ": ", frames.size(),
+                                 " frames in the array; the option index says which to read"));
+  return {frames.frame(options.index.value_or(0))};
+}
+
+inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
+                                       const depth_options& options) {
+#if defined(AIB_WITH_EXR)
+  // Rays need all pixels at their places; else lines that nobody asks for are not decoded.
+  const bool shrink = !options.range_camera;
+  return read_exr(path, {.channel = options.channel,
+                         .width = shrink ? options.width : 0,
+                         .height = shrink ? options.height : 0,
+                         .rule = options.rule});
+#else
+  static_cast<void>(options);
+  throw format_error(path, "this build of aib reads no EXR; build it with zlib");
+#endif
+}
+
+inline depth::depth_map read_png_depth(const std::filesystem::path& path,
+                                       const depth_options& options) {
+#if defined(AIB_WITH_PNG)
+  const png_header header = read_png_header(path);
+  if (header.bits != 16 || !header.is_gray)
+    throw format_error(path,
+                       "png: gray depth of 16 bits expected; 8 bits or colours are a picture "
+                       "of depth, not depth");
+  const auto stored = read_png_gray(path);
+  depth::depth_map result{raster::image<float>(stored.width(), stored.height())};
+  std::copy(stored.begin(), stored.end(), result.values.begin());
+  if (options.scale == 0)
+    result.warnings.push_back("1000 steps a unit were assumed; the option scale says otherwise");
+  return result;
+#else
+  static_cast<void>(options);
+  throw format_error(path, "this build of aib reads no PNG; build it with libspng");
+#endif
+}
+
+inline depth::depth_map read_stored_depth(const std::filesystem::path& path,
+                                          file_kind kind,
+                                          const depth_options& options) {
+  if (options.raw_width > 0 && options.raw_height > 0)
+    return read_raw_depth(path, options.raw_width, options.raw_height);
+  switch (kind) {
     case file_kind::colmap_map:
       return read_colmap_depth(path);
+    case file_kind::dmap:
+      return read_dmap(path);
     case file_kind::exr:
-#if defined(AIB_WITH_EXR)
-      return read_exr(path, {.channel = options.channel,
-                             .width = options.width,
-                             .height = options.height,
-                             .rule = options.rule});
-#else
-      throw format_error(path, "this build of aib reads no EXR; build it with zlib");
-#endif
+      return read_exr_depth(path, options);
+    case file_kind::npy:
+    case file_kind::npz:
+      return read_depth_array(path, options);
+    case file_kind::pfm:
+      return read_pfm(path);
+    case file_kind::png:
+      return read_png_depth(path, options);
     default:
-      throw format_error(path, "a depth map expected: EXR, COLMAP .bin");
+      throw format_error(path,
+                         "a depth map expected: EXR, PFM, NPY, NPZ, 16-bit PNG, COLMAP .bin, "
+                         ".dmap, or floats without header whose size is given");
   }
+}
+
+inline void clear_from(depth::depth_map& map, double max_depth) {
+  std::size_t n = 0;
+  for (float& depth : map.values) {
+    if (!(static_cast<double>(depth) >= max_depth)) continue;
+    depth = 0;
+    ++n;
+  }
+  if (n > 0) {
+    map.warnings.push_back(message(n, " of ", map.values.size(), " pixels are at max_depth ",
+                                   max_depth, " or beyond"));
+  }
+}
+
+/// Stored values to depth of the wanted size.
+inline depth::depth_map finish_depth(depth::depth_map map,
+                                     file_kind kind,
+                                     const depth_options& options) {
+  const double usual = kind == file_kind::png ? 1000 : 1;
+  const double scale = options.scale > 0 ? options.scale : usual;
+  if (scale != 1)
+    for (float& depth : map.values) depth = static_cast<float>(static_cast<double>(depth) / scale);
+  if (options.range_camera) planar_from_range(map.values, *options.range_camera);
+  if (options.max_depth < std::numeric_limits<double>::infinity())
+    clear_from(map, options.max_depth);
+  const std::size_t width = options.width ? options.width : map.values.width();
+  const std::size_t height = options.height ? options.height : map.values.height();
+  if (width != map.values.width() || height != map.values.height())
+    map.values = raster::resample_nearest<float>(map.values, width, height, options.rule);
+  return map;
+}
+
+inline void check_depth_options(const depth_options& options) {
+  if (!(options.scale >= 0) || !(options.max_depth > 0))
+    throw argument_error("io::read_depth: scale >= 0 and max_depth > 0 expected");
+}
+
+inline raster::image<std::uint16_t> depth_steps(raster::view<const float> depth, double scale) {
+  raster::image<std::uint16_t> steps(depth.width, depth.height);
+  for (std::size_t y = 0; y < depth.height; ++y) {
+    for (std::size_t x = 0; x < depth.width; ++x) {
+      const double step = std::round(static_cast<double>(depth(x, y)) * scale);
+      steps(x, y) = step > 0 && step <= 65535 ? static_cast<std::uint16_t>(step) : std::uint16_t{0};
+    }
+  }
+  return steps;
 }
 
 }  // namespace detail
 
-/// Reads a depth map; the format is told from the content, then from the extension. Pixels without
-/// depth are 0 or not finite.
-///
-/// Throws format_error where the format is not known or the file is damaged, io_error where it
-/// cannot be read, argument_error where an option has no meaning.
 inline depth::depth_map read_depth(const std::filesystem::path& path,
-                                   const depth_options& options = {}) {
-  if (!(options.scale >= 0) || !(options.max_depth > 0))
-    throw argument_error("io::read_depth: scale >= 0 and max_depth > 0 expected");
-  depth::depth_map result = detail::read_depth_as_stored(path, options);
-  if (options.scale > 0) {
-    for (float& depth : result.values)
-      depth = static_cast<float>(static_cast<double>(depth) / options.scale);
-  }
-  std::size_t n_far = 0;
-  for (float& depth : result.values) {
-    if (!(static_cast<double>(depth) >= options.max_depth)) continue;
-    depth = 0;
-    ++n_far;
-  }
-  if (n_far > 0)
-    result.warnings.push_back(message(n_far, " of ", result.values.size(),
-                                      " pixels are at max_depth ", options.max_depth,
-                                      " or beyond"));
-  const std::size_t width = options.width ? options.width : result.values.width();
-  const std::size_t height = options.height ? options.height : result.values.height();
-  if (width != result.values.width() || height != result.values.height())
-    result.values = raster::resample_nearest<float>(result.values, width, height, options.rule);
-  return result;
+                                   const depth_options& options) {
+  detail::check_depth_options(options);
+  const file_kind kind = kind_of(path);
+  return detail::finish_depth(detail::read_stored_depth(path, kind, options), kind, options);
 }
 
-/// Writes a depth map in the format of the extension: .exr (ZIP, float).
-/// Throws argument_error for another extension.
-inline void write_depth(const std::filesystem::path& path, raster::view<const float> depth) {
+inline std::vector<depth::depth_map> read_depth_stack(const std::filesystem::path& path,
+                                                      const depth_options& options) {
+  detail::check_depth_options(options);
+  const file_kind kind = kind_of(path);
+  std::vector<depth::depth_map> stack;
+  if (kind != file_kind::npy && kind != file_kind::npz) {
+    stack.push_back(read_depth(path, options));
+    return stack;
+  }
+  const array_frames frames = read_array_frames(path, options.key);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    stack.push_back(detail::finish_depth({frames.frame(i)}, kind, options));
+  return stack;
+}
+
+inline void write_depth(const std::filesystem::path& path,
+                        raster::view<const float> depth,
+                        const depth_write_options& options) {
+  const std::string extension = extension_of(path);
+  if (depth.empty()) throw argument_error("io::write_depth: an empty depth map");
+  if (extension == ".pfm") return write_pfm(path, depth);
+  if (extension == ".npy") {
+    std::vector<float> values;
+    for (std::size_t y = 0; y < depth.height; ++y)
+      values.insert(values.end(), depth.row(y).begin(), depth.row(y).end());
+    return write_npy(path, make_array<float>({depth.height, depth.width}, values));
+  }
 #if defined(AIB_WITH_EXR)
-  if (extension_of(path) == ".exr") return write_exr(path, depth);
+  if (extension == ".exr") return write_exr(path, depth);
 #endif
-  throw argument_error(message("io::write_depth: the extension .exr expected, found \"",
-                               path.extension().string(), "\""));
+#if defined(AIB_WITH_PNG)
+  if (extension == ".png")
+    return write_png<std::uint16_t>(path, detail::depth_steps(depth, options.scale));
+#else
+  static_cast<void>(options);
+#endif
+  throw argument_error(
+      message("io::write_depth: the extension .exr, .pfm, .npy or .png expected, "
+              "found \"",
+              path.extension().string(), "\""));
 }
 
 }  // namespace aib::io
@@ -10433,7 +16180,273 @@ inline fingerprint fingerprint_of(const std::filesystem::path& path) {
 
 }  // namespace aib::io
 
+// aib/io/jpeg.hpp
+
+#if defined(AIB_WITH_JPEG)
+#include <jpeglib.h>
+
+namespace aib::io {
+
+namespace detail {
+
+/// libjpeg reports an error by a call that must not return: it jumps back into `run`.
+class jpeg_decoder {
+ public:
+  explicit jpeg_decoder(const std::string& bytes) {
+    info_.err = jpeg_std_error(&errors_.base);
+    errors_.base.error_exit = [](j_common_ptr info) {
+      auto* errors = reinterpret_cast<error_manager*>(info->err);
+      info->err->format_message(info, errors->text);
+      std::longjmp(errors->back, 1);
+    };
+    errors_.base.output_message = [](j_common_ptr) {};
+    jpeg_create_decompress(&info_);
+    bytes_ = reinterpret_cast<const unsigned char*>(bytes.data());
+    n_bytes_ = bytes.size();
+  }
+  ~jpeg_decoder() { jpeg_destroy_decompress(&info_); }
+  jpeg_decoder(const jpeg_decoder&) = delete;
+  jpeg_decoder& operator=(const jpeg_decoder&) = delete;
+
+  /// False where libjpeg gave up; `error` says why.
+  bool read_header() {
+    // Nothing with a destructor lives on this frame: longjmp would not run it.
+    if (setjmp(errors_.back) != 0) return false;
+    jpeg_mem_src(&info_, bytes_, n_bytes_);
+    jpeg_read_header(&info_, TRUE);
+    info_.out_color_space = JCS_RGB;
+    return true;
+  }
+
+  bool read_pixels(unsigned char* to) {
+    if (setjmp(errors_.back) != 0) return false;
+    jpeg_start_decompress(&info_);
+    while (info_.output_scanline < info_.output_height) {
+      JSAMPROW row = to + std::size_t{3} * info_.output_width * info_.output_scanline;
+      jpeg_read_scanlines(&info_, &row, 1);
+    }
+    jpeg_finish_decompress(&info_);
+    return errors_.base.num_warnings == 0;
+  }
+
+  [[nodiscard]] std::size_t width() const { return info_.image_width; }
+  [[nodiscard]] std::size_t height() const { return info_.image_height; }
+  [[nodiscard]] const char* error() const {
+    return errors_.text[0] != '\0' ? errors_.text : "damaged pixels";
+  }
+
+ private:
+  struct error_manager {
+    jpeg_error_mgr base;
+    std::jmp_buf back;
+    char text[JMSG_LENGTH_MAX] = {};
+  };
+  jpeg_decompress_struct info_ = {};
+  error_manager errors_ = {};
+  const unsigned char* bytes_ = nullptr;
+  std::size_t n_bytes_ = 0;
+};
+
+}  // namespace detail
+
+/// Reads a JPEG as 8-bit red, green, blue. Needs libjpeg (libjpeg-turbo).
+/// Throws format_error where the file is damaged or larger than 2^27 pixels.
+inline raster::color_image read_jpeg(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  detail::jpeg_decoder decoder(bytes);
+  if (!decoder.read_header()) throw format_error(path, message("jpeg: ", decoder.error()));
+  if (decoder.width() * decoder.height() > std::size_t{1} << 27)
+    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(), " pixels"));
+  raster::color_image image(decoder.width(), decoder.height());
+  if (!decoder.read_pixels(image.data()->data()))
+    throw format_error(path, message("jpeg: ", decoder.error()));
+  return image;
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/image.hpp
+
+#if defined(AIB_WITH_PNG)
+#endif
+#if defined(AIB_WITH_JPEG)
+#endif
+
+namespace aib::io {
+
+/// Whether an image file holds one number a pixel (gray, or a palette) and no transparency, so that
+/// read_labels reads it. Throws as read_image does.
+inline bool is_label_image(const std::filesystem::path& path) {
+#if defined(AIB_WITH_PNG)
+  if (kind_of(path) == file_kind::png) {
+    const png_header header = read_png_header(path);
+    return header.is_gray && !header.has_alpha;
+  }
+#endif
+  static_cast<void>(path);
+  return false;
+}
+
+/// Reads a picture, PNG or JPEG, as 8-bit colours. Transparency is dropped.
+/// Throws format_error where the file is damaged or no picture that this build reads.
+inline raster::color_image read_image(const std::filesystem::path& path) {
+  switch (kind_of(path)) {
+    case file_kind::png:
+#if defined(AIB_WITH_PNG)
+      return read_png_color(path);
+#else
+      throw format_error(path, "this build of aib reads no PNG; build it with libspng");
+#endif
+    case file_kind::jpeg:
+#if defined(AIB_WITH_JPEG)
+      return read_jpeg(path);
+#else
+      throw format_error(path, "this build of aib reads no JPEG; build it with libjpeg");
+#endif
+    default:
+      throw format_error(path, "an image expected: PNG or JPEG");
+  }
+}
+
+/// Reads masks and labels: the stored numbers of a gray PNG of 1 to 16 bits or of a palette.
+/// Throws format_error for colours, and where the file is damaged.
+inline raster::label_image read_labels(const std::filesystem::path& path) {
+#if defined(AIB_WITH_PNG)
+  if (kind_of(path) == file_kind::png) return read_png_gray(path);
+#endif
+  throw format_error(path, "a gray PNG or one with a palette expected");
+}
+
+/// Writes gray (8 or 16 bits), rgb or rgba pixels as PNG. Throws argument_error for another
+/// extension or an empty image.
+template <class Pixel>
+void write_image(const std::filesystem::path& path, raster::view<const Pixel> image) {
+#if defined(AIB_WITH_PNG)
+  if (extension_of(path) == ".png") return write_png(path, image);
+#endif
+  static_cast<void>(image);
+  throw argument_error(message("io::write_image: the extension .png expected, found \"",
+                               path.extension().string(), "\""));
+}
+
+}  // namespace aib::io
+
+// aib/io/stl.hpp
+
+namespace aib::io {
+
+/// Reads a binary or ascii STL file; which of them is told from the size, since binary files may
+/// begin with "solid" too. Corners at the same place become one vertex. Normals are passed over.
+///
+/// Throws format_error where the file is damaged.
+/// Source: 3D Systems, "StereoLithography Interface Specification".
+mesh::mesh read_stl(const std::filesystem::path& path);
+
+namespace detail {
+
+/// Numbers equal corners alike: vertices in the order of their first use.
+inline mesh::mesh weld(const std::vector<Eigen::Vector3f>& corners) {
+  std::vector<std::uint32_t> order(corners.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) {
+    std::array<std::uint32_t, 4> k{0, 0, 0, i};  // bits, so that NaN has a place; ties by order
+    for (int axis = 0; axis < 3; ++axis)
+      k[static_cast<std::size_t>(axis)] = std::bit_cast<std::uint32_t>(corners[i][axis] + 0.0f);
+    return k;
+  };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> first(corners.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto here = key(order[i]);
+    const bool same =
+        i > 0 && std::equal(here.begin(), here.begin() + 3, key(order[i - 1]).begin());
+    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  }
+  mesh::mesh result;
+  std::vector<std::uint32_t> number(corners.size());
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    if (first[i] == i) {
+      number[i] = static_cast<std::uint32_t>(result.vertices.size());
+      result.vertices.push_back(corners[i]);
+    } else {
+      number[i] = number[first[i]];
+    }
+  }
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    result.triangles.push_back({number[i], number[i + 1], number[i + 2]});
+  return result;
+}
+
+inline std::vector<Eigen::Vector3f> read_binary_stl(const input_file& file) {
+  byte_stream in(file);
+  in.skip(80, "stl: header");
+  const auto n = in.read_number<std::uint32_t>("stl: number of triangles");
+  in.demand(std::uint64_t{50} * n, "stl: triangles");
+  std::vector<Eigen::Vector3f> corners;
+  corners.reserve(std::size_t{3} * n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const char* triangle = in.take(50, "stl: triangle") + 12;
+    for (std::size_t k = 0; k < 3; ++k, triangle += 12)
+      corners.emplace_back(load<float>(triangle), load<float>(triangle + 4),
+                           load<float>(triangle + 8));
+  }
+  return corners;
+}
+
+inline std::vector<Eigen::Vector3f> read_ascii_stl(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  line_reader lines(text, path);
+  std::vector<Eigen::Vector3f> corners;
+  bool in_facet = false;
+  while (lines.next_content()) {
+    std::string_view rest = trim(lines.line());
+    std::string word(rest.substr(0, rest.find_first_of(" \t")));
+    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    rest.remove_prefix(word.size());
+    if (word == "vertex") {
+      Eigen::Vector3f corner;
+      for (int k = 0; k < 3; ++k) {
+        const auto number = take_number(rest);
+        if (!number || !in_facet) lines.fail("stl: a vertex of 3 numbers within a facet expected");
+        corner[k] = static_cast<float>(*number);
+      }
+      corners.push_back(corner);
+    } else if (word == "facet" || word == "endfacet") {
+      if (in_facet == (word == "facet") || corners.size() % 3 != 0)
+        lines.fail("stl: facets of 3 vertices expected");
+      in_facet = word == "facet";
+    } else if (word != "solid" && word != "outer" && word != "endloop" && word != "endsolid") {
+      lines.fail(message("stl: facet, outer loop, vertex, endloop or endfacet expected, found \"",
+                         word.substr(0, 40), "\""));
+    }
+  }
+  if (in_facet) lines.fail("stl: the file ends within a facet");
+  return corners;
+}
+
+}  // namespace detail
+
+inline mesh::mesh read_stl(const std::filesystem::path& path) {
+  const input_file file(path);
+  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 84)), '\0');
+  file.read_at(0, begin.data(), begin.size());
+  const bool is_ascii = !detail::is_binary_stl(begin, file.size()) &&
+                        (begin.starts_with("solid") || begin.starts_with("SOLID"));
+  mesh::mesh result =
+      detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));
+  if (result.triangles.empty()) result.warnings.push_back("no triangles");
+  if (auto warning = non_finite_warning(result.vertices, "vertices"))
+    result.warnings.push_back(std::move(*warning));
+  return result;
+}
+
+}  // namespace aib::io
+
 // aib/io/mesh.hpp
+
+#if defined(AIB_WITH_JSON)
+#endif
 
 namespace aib::io {
 
@@ -10441,19 +16454,39 @@ struct mesh_options {
   up_axis up = up_axis::z;  ///< axis that points up in the file
 };
 
-/// Reads a mesh; the format is told from the content, then from the extension.
+/// Reads a mesh; the format is told from the content, then from the extension: PLY, OBJ, STL, GLB.
 ///
 /// Throws format_error where the format is not known or the file is damaged, io_error where it
 /// cannot be read.
-inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options = {}) {
-  mesh::mesh result;
+mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options = {});
+
+namespace detail {
+
+inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
   switch (kind_of(path)) {
     case file_kind::ply:
-      result = read_ply_mesh(path);
-      break;
+      return read_ply_mesh(path);
+    case file_kind::obj:
+      return read_obj(path);
+    case file_kind::stl:
+      return read_stl(path);
+    case file_kind::glb:
+#if defined(AIB_WITH_JSON)
+      return read_glb_mesh(path);
+#else
+      throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
+#endif
+    case file_kind::gltf:
+      throw format_error(path, "glTF of several files is not supported; export it as .glb");
     default:
-      throw format_error(path, "a mesh expected: PLY");
+      throw format_error(path, "a mesh expected: PLY, OBJ, STL or GLB");
   }
+}
+
+}  // namespace detail
+
+inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
+  mesh::mesh result = detail::read_stored_mesh(path);
   turn_z_up(result, options.up);
   return result;
 }
@@ -10467,463 +16500,6 @@ inline void write_mesh(const std::filesystem::path& path,
                                  path.extension().string(), "\""));
   }
   write_ply(path, mesh, extras);
-}
-
-}  // namespace aib::io
-
-// aib/io/npy.hpp
-
-namespace aib::io {
-
-/// Element types of arrays, with NumPy's names: kind and bytes.
-enum class dtype { b1, i1, i2, i4, i8, u1, u2, u4, u8, f2, f4, f8 };
-
-/// "f4" and the like.
-[[nodiscard]] std::string_view name(dtype type);
-
-/// Bytes of an element.
-[[nodiscard]] std::size_t size_of(dtype type);
-
-/// The type that holds T: bool, the integers and floats of 1 to 8 bytes.
-template <class T>
-[[nodiscard]] constexpr dtype dtype_of();
-
-/// A dense array of numbers of any shape. The elements lie in C order (last index fastest) and in
-/// the machine's byte order, whatever the file had.
-struct array {
-  dtype type = dtype::f8;
-  std::vector<std::size_t> shape = {};  ///< empty: a single number
-  std::string bytes = {};               ///< size() * size_of(type)
-
-  [[nodiscard]] std::size_t size() const;
-  /// The sub-array at an index of the first axis: `a[index]`. Throws argument_error if there is
-  /// none.
-  [[nodiscard]] array at(std::size_t index) const;
-  /// Element `i` in C order, as a double. Integers beyond 2^53 are rounded.
-  [[nodiscard]] double operator[](std::size_t i) const;
-  /// All elements in C order, as float or double.
-  template <std::floating_point Scalar>
-  [[nodiscard]] std::vector<Scalar> values() const;
-};
-
-/// The shape as NumPy prints it: "(8, 5)", "(3,)", "()".
-[[nodiscard]] std::string text_of_shape(std::span<const std::size_t> shape);
-
-/// An array of the given shape over a copy of `values`. Throws argument_error where their number
-/// is another.
-template <class T>
-[[nodiscard]] array make_array(std::vector<std::size_t> shape, std::span<const T> values);
-
-/// An NPY file: versions 1 to 3, both byte orders, C and Fortran order, bool, integers and floats
-/// of 1 to 8 bytes. Bytes after the elements are ignored, as NumPy does.
-///
-/// Throws format_error for pickled objects, structures, complex numbers, strings and long doubles,
-/// and where the file is shorter than its shape.
-/// Source: NumPy Enhancement Proposal 1, and numpy.lib.format of NumPy 2.
-[[nodiscard]] array read_npy(const std::filesystem::path& path);
-
-/// The same from bytes in memory; `path` names them in errors.
-[[nodiscard]] array parse_npy(std::string bytes, const std::filesystem::path& path);
-
-/// What NumPy writes for an array: version 1, C order, little endian, elements from a multiple of
-/// 64 bytes on.
-[[nodiscard]] std::string npy_bytes(const array& a);
-
-void write_npy(const std::filesystem::path& path, const array& a);
-
-namespace detail {
-
-struct dtype_info {
-  std::string_view name;
-  std::size_t bytes;
-};
-
-inline constexpr std::array<dtype_info, 12> dtypes{{{"b1", 1},
-                                                    {"i1", 1},
-                                                    {"i2", 2},
-                                                    {"i4", 4},
-                                                    {"i8", 8},
-                                                    {"u1", 1},
-                                                    {"u2", 2},
-                                                    {"u4", 4},
-                                                    {"u8", 8},
-                                                    {"f2", 2},
-                                                    {"f4", 4},
-                                                    {"f8", 8}}};
-
-/// What the header of an NPY file says.
-struct npy_header {
-  dtype type = dtype::f8;
-  std::endian order = std::endian::little;
-  bool fortran = false;
-  std::vector<std::size_t> shape;
-  std::size_t begin = 0;  ///< byte of the first element
-};
-
-/// Reads the header's Python dictionary: no more of the language than NumPy writes there.
-class npy_dictionary {
- public:
-  npy_dictionary(std::string_view text, std::size_t at_byte, const std::filesystem::path& path)
-      : text_(text), offset_(at_byte), path_(path) {}
-
-  npy_header read() {
-    expect('{');
-    while (!accept('}')) {
-      const std::string_view key = quoted();
-      expect(':');
-      value(key);
-      if (!accept(',') && peek() != '}') fail("',' or '}' expected");
-    }
-    skip_blanks();
-    if (at_ < text_.size()) fail("text after the dictionary");
-    if (!seen_type_ || !seen_order_ || !seen_shape_)
-      fail("the keys descr, fortran_order and shape expected");
-    return std::move(header_);
-  }
-
- private:
-  void value(std::string_view key) {
-    if (key == "descr") {
-      once(seen_type_, key);
-      type();
-    } else if (key == "fortran_order") {
-      once(seen_order_, key);
-      header_.fortran = boolean();
-    } else if (key == "shape") {
-      once(seen_shape_, key);
-      shape();
-    } else {
-      fail(message("unknown key '", key, "'"));
-    }
-  }
-
-  void once(bool& seen, std::string_view key) const {
-    if (std::exchange(seen, true)) fail(message("the key ", key, " comes twice"));
-  }
-
-  void type() {
-    if (peek() == '[') fail("structured elements are not supported; save the fields apart");
-    const std::string_view descr = quoted();
-    const std::string_view type = descr.size() > 1 ? descr.substr(1) : descr;
-    if (type.starts_with('O'))
-      fail("the elements are pickled Python objects, which are never loaded");
-    const auto known = std::find_if(dtypes.begin(), dtypes.end(),
-                                    [&](const dtype_info& info) { return info.name == type; });
-    const char order = descr.empty() ? '\0' : descr.front();
-    const bool ordered = order == '<' || order == '>' || order == '=';
-    if (known == dtypes.end() || !(ordered || (order == '|' && known->bytes == 1))) {
-      fail(message("element type '", descr,
-                   "' is not supported; bool, integers and floats of 1 to 8 bytes are"));
-    }
-    header_.type = static_cast<dtype>(known - dtypes.begin());
-    if (order == '>') header_.order = std::endian::big;
-    if (order == '=') header_.order = std::endian::native;
-  }
-
-  bool boolean() {
-    if (accept_word("True")) return true;
-    if (accept_word("False")) return false;
-    fail("fortran_order: True or False expected");
-  }
-
-  void shape() {
-    constexpr std::size_t max_axes = 32;
-    expect('(');
-    while (!accept(')')) {
-      skip_blanks();
-      const std::size_t end = std::min(text_.find_first_not_of("0123456789", at_), text_.size());
-      const auto extent = parse<std::size_t>(text_.substr(at_, end - at_));
-      if (!extent) fail("shape: a whole number expected");
-      at_ = end;
-      accept('L');  // Python 2 wrote long integers so
-      header_.shape.push_back(*extent);
-      if (header_.shape.size() > max_axes) fail("shape: more than 32 axes");
-      if (!accept(',') && peek() != ')') fail("shape: ',' or ')' expected");
-    }
-  }
-
-  std::string_view quoted() {
-    const char quote = peek();
-    if (quote != '\'' && quote != '"') fail("a quoted name expected");
-    const std::size_t end = text_.find(quote, at_ + 1);
-    if (end == std::string_view::npos) fail("a quoted name without an end");
-    const std::string_view content = text_.substr(at_ + 1, end - at_ - 1);
-    at_ = end + 1;
-    return content;
-  }
-
-  void skip_blanks() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
-  char peek() {
-    skip_blanks();
-    return at_ < text_.size() ? text_[at_] : '\0';
-  }
-  bool accept(char c) {
-    if (peek() != c || at_ == text_.size()) return false;
-    ++at_;
-    return true;
-  }
-  bool accept_word(std::string_view word) {
-    skip_blanks();
-    if (!text_.substr(at_).starts_with(word)) return false;
-    at_ += word.size();
-    return true;
-  }
-  void expect(char c) {
-    if (!accept(c)) fail(message("'", c, "' expected"));
-  }
-  [[noreturn]] void fail(std::string_view what) const {
-    throw format_error(path_, at_byte{offset_ + at_}, message("npy: header: ", what));
-  }
-
-  std::string_view text_;
-  std::size_t offset_;
-  const std::filesystem::path& path_;
-  std::size_t at_ = 0;
-  npy_header header_;
-  bool seen_type_ = false;
-  bool seen_order_ = false;
-  bool seen_shape_ = false;
-};
-
-/// Number of elements; nothing where it does not fit in memory's arithmetic.
-inline std::optional<std::size_t> element_count(std::span<const std::size_t> shape) {
-  constexpr std::size_t limit = std::numeric_limits<std::size_t>::max() / 16;
-  std::size_t count = 1;
-  bool empty = false;
-  for (const std::size_t extent : shape) {
-    empty |= extent == 0;
-    if (extent > limit / count) return std::nullopt;
-    count *= std::max<std::size_t>(extent, 1);
-  }
-  return empty ? 0 : count;
-}
-
-/// The bytes before the header's text: magic, version and its length.
-struct npy_preamble {
-  std::size_t text_begin;
-  std::size_t text_size;
-};
-
-inline npy_preamble read_npy_preamble(std::string_view bytes, const std::filesystem::path& path) {
-  byte_reader in(bytes, path);
-  if (in.take(std::min<std::size_t>(6, bytes.size()), "npy: magic") != "\x93NUMPY")
-    throw format_error(path, at_byte{0}, "npy: not an NPY file: it does not begin with \\x93NUMPY");
-  const auto version = in.read<std::uint8_t>("npy: version");
-  in.read<std::uint8_t>("npy: version");
-  if (version < 1 || version > 3)
-    in.fail(message("npy: version 1, 2 or 3 expected, found ", unsigned{version}));
-  const std::size_t size = version == 1 ? in.read<std::uint16_t>("npy: header length")
-                                        : in.read<std::uint32_t>("npy: header length");
-  return {in.position(), size};
-}
-
-/// The header from the first bytes of a file that holds `file_size`.
-/// Refuses a shape that the file cannot hold.
-inline npy_header read_npy_header(std::string_view bytes,
-                                  std::uint64_t file_size,
-                                  const std::filesystem::path& path) {
-  const npy_preamble preamble = read_npy_preamble(bytes, path);
-  byte_reader in(bytes, path);
-  in.take(preamble.text_begin, "npy: magic");
-  const std::string_view text = in.take(preamble.text_size, "npy: header");
-  npy_header header = npy_dictionary(text, preamble.text_begin, path).read();
-  header.begin = in.position();
-  const std::uint64_t left = file_size - header.begin;
-  const auto count = element_count(header.shape);
-  if (!count || *count > left / size_of(header.type)) {
-    in.fail(message("npy: ", text_of_shape(header.shape), " elements of type ", name(header.type),
-                    " do not fit in the ", left, " bytes left"));
-  }
-  return header;
-}
-
-inline void reverse_elements(std::string& bytes, std::size_t element) {
-  for (std::size_t i = 0; i + element <= bytes.size(); i += element)
-    std::reverse(bytes.data() + i, bytes.data() + i + element);
-}
-
-/// The elements of a Fortran-ordered array in C order.
-inline std::string c_ordered(const std::string& bytes,
-                             std::span<const std::size_t> shape,
-                             std::size_t element) {
-  std::vector<std::size_t> stride(shape.size());
-  std::size_t step = element;
-  for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-    stride[axis] = step;
-    step *= shape[axis];
-  }
-  std::string out(bytes.size(), '\0');
-  std::vector<std::size_t> index(shape.size(), 0);
-  std::size_t from = 0;
-  for (std::size_t to = 0; to < out.size(); to += element) {
-    std::memcpy(out.data() + to, bytes.data() + from, element);
-    for (std::size_t axis = shape.size(); axis-- > 0;) {
-      from += stride[axis];
-      if (++index[axis] < shape[axis]) break;
-      from -= stride[axis] * shape[axis];
-      index[axis] = 0;
-    }
-  }
-  return out;
-}
-
-inline array make_array(npy_header header, std::string bytes) {
-  const std::size_t element = size_of(header.type);
-  if (header.order != std::endian::native) reverse_elements(bytes, element);
-  if (header.fortran && header.shape.size() > 1) bytes = c_ordered(bytes, header.shape, element);
-  return {header.type, std::move(header.shape), std::move(bytes)};
-}
-
-template <class T>
-double load_native(const char* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return static_cast<double>(value);
-}
-
-inline double load_half(const char* from) {
-  std::uint16_t bits;
-  std::memcpy(&bits, from, sizeof bits);
-  return static_cast<double>(float_from_half(bits));
-}
-
-inline double load_boolean(const char* from) { return *from != 0 ? 1 : 0; }
-
-/// The function that reads an element of a type.
-inline double (*loader(dtype type))(const char*) {
-  switch (type) {
-    case dtype::b1:
-      return load_boolean;
-    case dtype::i1:
-      return load_native<std::int8_t>;
-    case dtype::i2:
-      return load_native<std::int16_t>;
-    case dtype::i4:
-      return load_native<std::int32_t>;
-    case dtype::i8:
-      return load_native<std::int64_t>;
-    case dtype::u1:
-      return load_native<std::uint8_t>;
-    case dtype::u2:
-      return load_native<std::uint16_t>;
-    case dtype::u4:
-      return load_native<std::uint32_t>;
-    case dtype::u8:
-      return load_native<std::uint64_t>;
-    case dtype::f2:
-      return load_half;
-    case dtype::f4:
-      return load_native<float>;
-    case dtype::f8:
-      break;
-  }
-  return load_native<double>;
-}
-
-}  // namespace detail
-
-inline std::string_view name(dtype type) {
-  return detail::dtypes[static_cast<std::size_t>(type)].name;
-}
-
-inline std::size_t size_of(dtype type) {
-  return detail::dtypes[static_cast<std::size_t>(type)].bytes;
-}
-
-template <class T>
-constexpr dtype dtype_of() {
-  static_assert(std::is_arithmetic_v<T> && sizeof(T) <= 8, "no element type of arrays");
-  if constexpr (std::is_same_v<T, bool>) return dtype::b1;
-  if constexpr (std::is_floating_point_v<T>) return sizeof(T) == 4 ? dtype::f4 : dtype::f8;
-  const int power = std::countr_zero(sizeof(T));
-  return static_cast<dtype>(static_cast<int>(std::is_signed_v<T> ? dtype::i1 : dtype::u1) + power);
-}
-
-inline std::size_t array::size() const { return detail::element_count(shape).value_or(0); }
-
-inline array array::at(std::size_t index) const {
-  if (shape.empty() || index >= shape.front()) {
-    throw argument_error(
-        message("array: no element ", index, " on the first axis of ", text_of_shape(shape)));
-  }
-  const std::size_t n = bytes.size() / shape.front();
-  return {type, {shape.begin() + 1, shape.end()}, bytes.substr(index * n, n)};
-}
-
-inline double array::operator[](std::size_t i) const {
-  return detail::loader(type)(bytes.data() + i * size_of(type));
-}
-
-template <std::floating_point Scalar>
-std::vector<Scalar> array::values() const {
-  std::vector<Scalar> out(size());
-  if (type == dtype_of<Scalar>()) {
-    if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
-    return out;
-  }
-  const auto load = detail::loader(type);
-  const std::size_t element = size_of(type);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<Scalar>(load(bytes.data() + i * element));
-  return out;
-}
-
-inline std::string text_of_shape(std::span<const std::size_t> shape) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    text += message(shape[i], i + 1 < shape.size() ? ", " : "");
-  return text + (shape.size() == 1 ? ",)" : ")");
-}
-
-template <class T>
-array make_array(std::vector<std::size_t> shape, std::span<const T> values) {
-  array a{dtype_of<std::remove_const_t<T>>(), std::move(shape), {}};
-  if (detail::element_count(a.shape) != values.size()) {
-    throw argument_error(
-        message("make_array: ", values.size(), " values for shape ", text_of_shape(a.shape)));
-  }
-  a.bytes.assign(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-  return a;
-}
-
-inline array read_npy(const std::filesystem::path& path) {
-  const input_file file(path);
-  const auto part = [&](std::uint64_t offset, std::uint64_t n) {
-    std::string bytes(static_cast<std::size_t>(std::min(n, file.size() - offset)), '\0');
-    file.read_at(offset, bytes.data(), bytes.size());
-    return bytes;
-  };
-  const std::string start = part(0, 12);
-  const detail::npy_preamble preamble = detail::read_npy_preamble(start, path);
-  const std::string text = part(0, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(text, file.size(), path);
-  std::string elements =
-      part(header.begin, *detail::element_count(header.shape) * size_of(header.type));
-  return detail::make_array(std::move(header), std::move(elements));
-}
-
-inline array parse_npy(std::string bytes, const std::filesystem::path& path) {
-  detail::npy_header header = detail::read_npy_header(bytes, bytes.size(), path);
-  bytes.erase(0, header.begin);
-  bytes.resize(*detail::element_count(header.shape) * size_of(header.type));
-  return detail::make_array(std::move(header), std::move(bytes));
-}
-
-inline std::string npy_bytes(const array& a) {
-  std::string text = message("{'descr': '", size_of(a.type) == 1 ? '|' : '<', name(a.type),
-                             "', 'fortran_order': False, 'shape': ", text_of_shape(a.shape), ", }");
-  text.append(63 - (10 + text.size()) % 64, ' ');
-  text += '\n';
-  std::string bytes("\x93NUMPY\x01\x00", 8);
-  store(bytes, static_cast<std::uint16_t>(text.size()));
-  std::string elements = a.bytes;
-  if (std::endian::native != std::endian::little)
-    detail::reverse_elements(elements, size_of(a.type));
-  return bytes + text + elements;
-}
-
-inline void write_npy(const std::filesystem::path& path, const array& a) {
-  write_file(path, npy_bytes(a));
 }
 
 }  // namespace aib::io
@@ -11063,11 +16639,24 @@ inline constexpr std::array<pose_format_name, 12> pose_format_names{{
 
 namespace detail {
 
+/// The folder with an NPZ file for each image: `folder` or its folder `camera`; empty where there
+/// is none.
+inline std::filesystem::path folder_of_npz(const std::filesystem::path& folder) {
+  for (const std::filesystem::path& candidate : {folder, folder / "camera"}) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(candidate, ignored)) {
+      if (entry.path().extension() == ".npz") return candidate;
+    }
+  }
+  return {};
+}
+
 inline std::optional<pose_format> format_of_folder(const std::filesystem::path& folder) {
   if (!find_colmap_models(folder).empty()) return pose_format::colmap;
   if (std::filesystem::exists(folder / "camera_poses.txt")) return pose_format::da3;
   if (std::filesystem::exists(folder / "transforms.json")) return pose_format::transforms;
   if (std::filesystem::exists(folder / "reconstruction.json")) return pose_format::opensfm;
+  if (!folder_of_npz(folder).empty()) return pose_format::npz;
   return std::nullopt;
 }
 
@@ -11109,6 +16698,13 @@ inline std::optional<pose_format> format_of_text(std::string_view text,
   return format_of_rows(first, second);
 }
 
+/// The beginning of the first line with content, for a message.
+inline std::string_view first_words(std::string_view text, const std::filesystem::path& path) {
+  constexpr std::size_t enough = 60;
+  line_reader lines(text, path);
+  return lines.next_content() ? lines.line().substr(0, enough) : std::string_view();
+}
+
 inline std::optional<pose_format> format_of_content(std::string_view text,
                                                     const std::filesystem::path& path) {
   if (text.starts_with("\x93NUMPY")) return pose_format::npy;
@@ -11142,8 +16738,8 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) {
     if (const auto format = detail::format_of_folder(path)) return *format;
     throw format_error(path,
-                       "a COLMAP model (cameras, images), camera_poses.txt, transforms.json or "
-                       "reconstruction.json expected in the folder, found none");
+                       "a COLMAP model (cameras, images), camera_poses.txt, transforms.json, "
+                       "reconstruction.json or NPZ files expected in the folder, found none");
   }
   if (detail::is_colmap_file(path)) return pose_format::colmap;
   constexpr std::size_t enough = 1 << 16;
@@ -11155,8 +16751,9 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
   std::string names;
   for (const auto& known : pose_format_names)
     names += message(names.empty() ? "" : ", ", known.name);
-  throw format_error(
-      path, message("the format of the poses cannot be told; give one as format: ", names));
+  throw format_error(path,
+                     message("the format of the poses cannot be told from '",
+                             detail::first_words(begin, path), "'; give one as format: ", names));
 }
 
 }  // namespace aib::io
@@ -11242,10 +16839,12 @@ inline posed_images read_reality_capture(const std::filesystem::path& path,
   posed_images images;
   bool left_out = false;
   while (table.next()) {
+    const double heading = table.number("heading");
+    const double pitch = table.number("pitch");
+    const double roll = table.number("roll");
     pose_matrix matrix;
-    matrix.leftCols<3>() = detail::rotation_of_angles(table.number("heading"),
-                                                      table.number("pitch"), table.number("roll"));
-    matrix.col(3) << table.number("x"), table.number("y"), table.number("alt");
+    matrix.leftCols<3>() = detail::rotation_of_angles(heading, pitch, roll);
+    matrix.col(3) = Eigen::Vector3d{table.number("x"), table.number("y"), table.number("alt")};
     images.trajectory.names.emplace_back(table.text("name"));
     images.trajectory.world_from_camera.push_back(
         pose_from_matrix(matrix, {pose_convention::world_from_camera, camera_axes::opengl}));
@@ -11637,6 +17236,13 @@ inline pose_matrix read_transform_matrix(const json_node& rows) {
   return matrix;
 }
 
+/// Whether nerfstudio takes the model for a perspective camera with OpenCV's distortion.
+inline bool is_perspective(std::string_view model) {
+  constexpr std::array<std::string_view, 6> models{
+      "", "SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
+  return std::find(models.begin(), models.end(), model) != models.end();
+}
+
 /// Intrinsics of a frame: its own members, else those of the file.
 class transforms_intrinsics {
  public:
@@ -11663,9 +17269,7 @@ class transforms_intrinsics {
       return of(camera_model::opencv_fisheye,
                 {*fx, fy, cx, cy, k("k1"), k("k2"), k("k3"), k("k4")});
     }
-    const bool perspective =
-        model.empty() || model == "OPENCV" || model == "PINHOLE" || model == "SIMPLE_PINHOLE";
-    if (!perspective || k("k4") != 0) return std::nullopt;
+    if (!is_perspective(model) || k("k4") != 0) return std::nullopt;
     if (k("k3") != 0) {
       return of(camera_model::full_opencv,
                 {*fx, fy, cx, cy, k("k1"), k("k2"), k("p1"), k("p2"), k("k3"), 0, 0, 0});
@@ -11797,359 +17401,6 @@ inline void write_transforms(const std::filesystem::path& path, const posed_imag
 }  // namespace aib::io
 #endif
 
-// aib/io/npz.hpp
-
-#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
-#include <zlib.h>
-
-namespace aib::io {
-
-struct npz_options {
-  /// A member that inflates to more than `max_ratio` times its stored size is refused where it
-  /// needs more than `max_bytes`: arrays hardly compress so well, bombs do.
-  double max_ratio = 100;
-  std::uint64_t max_bytes = std::uint64_t{1} << 30;
-};
-
-/// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
-/// come from the central directory, contents are checked against their CRC-32. Members are read
-/// when asked for.
-///
-/// Needs zlib.
-/// Source: PKWARE, APPNOTE.TXT 6.3.10; numpy.savez.
-class npz_file {
- public:
-  /// Throws io_error where the file cannot be opened, format_error where it is not a zip.
-  explicit npz_file(const std::filesystem::path& path, const npz_options& options = {});
-
-  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
-
-  /// Names of the arrays, without ".npy", in the order of the file.
-  [[nodiscard]] std::vector<std::string> names() const;
-  [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
-
-  /// Reads an array. Throws argument_error where there is none of that name, format_error where it
-  /// is damaged, encrypted, of another compression, or pickled.
-  [[nodiscard]] array read(std::string_view name) const;
-
-  /// Shape and type from the array's header alone.
-  /// Throws as read does.
-  [[nodiscard]] array read_header(std::string_view name) const;
-
-  /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
-  [[nodiscard]] bool is_unreadable(std::string_view name) const;
-
- private:
-  struct member {
-    std::string name;
-    std::uint64_t offset = 0;  ///< of the local header
-    std::uint64_t packed = 0;
-    std::uint64_t size = 0;
-    std::uint32_t crc = 0;
-    std::uint16_t method = 0;
-    bool encrypted = false;
-  };
-  struct directory {
-    std::uint64_t offset;
-    std::uint64_t bytes;
-    std::uint64_t members;
-  };
-
-  [[nodiscard]] std::string part(std::uint64_t offset, std::uint64_t n) const;
-  [[nodiscard]] directory find_directory() const;
-  [[nodiscard]] directory find_directory64(std::uint64_t end) const;
-  [[nodiscard]] static member read_entry(byte_reader& in);
-  static void read_zip64(std::string_view extra,
-                         member& m,
-                         std::uint32_t packed,
-                         std::uint32_t size,
-                         std::uint32_t offset,
-                         byte_reader& in);
-  [[nodiscard]] const member* find(std::string_view name) const;
-  [[nodiscard]] const member& get(std::string_view name) const;
-  [[nodiscard]] std::uint64_t data_offset(const member& m) const;
-  /// The first `n` bytes of a member's content.
-  [[nodiscard]] std::string content(const member& m, std::uint64_t n) const;
-  [[nodiscard]] std::string inflated(const member& m, std::uint64_t n) const;
-  [[noreturn]] void fail(const member& m, std::string_view what) const;
-
-  input_file file_;
-  npz_options options_;
-  std::vector<member> members_;
-};
-
-/// All arrays of an NPZ file by name are too much at once as a rule; this reads one.
-[[nodiscard]] inline array read_npz(const std::filesystem::path& path, std::string_view name) {
-  return npz_file(path).read(name);
-}
-
-namespace detail {
-
-inline constexpr std::uint32_t zip_local = 0x04034b50;
-inline constexpr std::uint32_t zip_central = 0x02014b50;
-inline constexpr std::uint32_t zip_end = 0x06054b50;
-inline constexpr std::uint32_t zip64_end = 0x06064b50;
-inline constexpr std::uint32_t zip64_locator = 0x07064b50;
-inline constexpr std::uint32_t in_zip64 = 0xffffffff;  ///< the true number is in the extra field
-
-/// Inflates raw deflate data block by block.
-class inflater {
- public:
-  inflater() { ready_ = ::inflateInit2(&stream_, -MAX_WBITS) == Z_OK; }
-  inflater(const inflater&) = delete;
-  inflater& operator=(const inflater&) = delete;
-  ~inflater() { ::inflateEnd(&stream_); }
-
-  void input(std::string_view packed) {
-    stream_.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
-    stream_.avail_in = static_cast<uInt>(packed.size());
-  }
-  /// Fills `out` from `from` on as far as the input goes; false where the data is damaged.
-  bool fill(std::string& out, std::size_t& from) {
-    while (ready_ && !ended_ && from < out.size()) {
-      const std::size_t room = std::min<std::size_t>(out.size() - from, 1u << 30);
-      stream_.next_out = reinterpret_cast<Bytef*>(out.data() + from);
-      stream_.avail_out = static_cast<uInt>(room);
-      const int code = ::inflate(&stream_, Z_NO_FLUSH);
-      from += room - stream_.avail_out;
-      ended_ = code == Z_STREAM_END;
-      if (code == Z_BUF_ERROR || (code == Z_OK && stream_.avail_in == 0)) return true;
-      if (code != Z_OK && code != Z_STREAM_END) return false;
-    }
-    return ready_;
-  }
-
- private:
-  z_stream stream_ = {};
-  bool ready_ = false;
-  bool ended_ = false;
-};
-
-inline std::uint32_t crc32_of(std::string_view bytes) {
-  uLong crc = ::crc32(0, nullptr, 0);
-  while (!bytes.empty()) {
-    const std::size_t n = std::min<std::size_t>(bytes.size(), 1u << 30);
-    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(n));
-    bytes.remove_prefix(n);
-  }
-  return static_cast<std::uint32_t>(crc);
-}
-
-}  // namespace detail
-
-inline npz_file::npz_file(const std::filesystem::path& path, const npz_options& options)
-    : file_(path), options_(options) {
-  const directory d = find_directory();
-  const std::string bytes = part(d.offset, d.bytes);
-  byte_reader in(bytes, path);
-  constexpr std::size_t entry_bytes = 46;
-  if (d.members > bytes.size() / entry_bytes)
-    throw format_error(path, message("npz: ", d.members, " members do not fit in the directory"));
-  for (std::uint64_t i = 0; i < d.members; ++i) {
-    member m = read_entry(in);
-    if (!m.name.ends_with(".npy")) continue;
-    m.name.resize(m.name.size() - 4);
-    members_.push_back(std::move(m));
-  }
-}
-
-inline std::vector<std::string> npz_file::names() const {
-  std::vector<std::string> names;
-  for (const member& m : members_) names.push_back(m.name);
-  return names;
-}
-
-inline array npz_file::read(std::string_view name) const {
-  const member& m = get(name);
-  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
-  std::string bytes = content(m, m.size);
-  if (detail::crc32_of(bytes) != m.crc) fail(m, "the content does not fit its checksum");
-  return parse_npy(std::move(bytes), inside);
-}
-
-inline array npz_file::read_header(std::string_view name) const {
-  const member& m = get(name);
-  const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
-  const auto preamble =
-      detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
-  const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
-  return {header.type, std::move(header.shape), {}};
-}
-
-inline bool npz_file::is_unreadable(std::string_view name) const {
-  try {
-    static_cast<void>(read_header(name));
-    return false;
-  } catch (const format_error&) {
-    return true;
-  }
-}
-
-inline std::string npz_file::part(std::uint64_t offset, std::uint64_t n) const {
-  if (offset > file_.size() || n > file_.size() - offset) {
-    throw format_error(path(), message("npz: bytes ", offset, " to ", offset + n,
-                                       " expected, the file has ", file_.size()));
-  }
-  std::string bytes(static_cast<std::size_t>(n), '\0');
-  file_.read_at(offset, bytes.data(), bytes.size());
-  return bytes;
-}
-
-inline npz_file::directory npz_file::find_directory() const {
-  constexpr std::uint64_t end_bytes = 22;
-  constexpr std::uint64_t max_comment = 65535;
-  const std::uint64_t tail = std::min(file_.size(), end_bytes + max_comment);
-  const std::uint64_t begin = file_.size() - tail;
-  const std::string bytes = part(begin, tail);
-  const std::size_t at = bytes.rfind("PK\x05\x06");
-  if (at == std::string::npos || tail - at < end_bytes)
-    throw format_error(path(), "npz: not a zip file, or cut off: no end of the central directory");
-  byte_reader in(std::string_view(bytes).substr(at + 8), path());
-  in.read<std::uint16_t>("npz: members");
-  const auto members = in.read<std::uint16_t>("npz: members");
-  const auto size = in.read<std::uint32_t>("npz: directory size");
-  const auto offset = in.read<std::uint32_t>("npz: directory offset");
-  if (members == 0xffff || size == detail::in_zip64 || offset == detail::in_zip64)
-    return find_directory64(begin + at);
-  return {offset, size, members};
-}
-
-inline npz_file::directory npz_file::find_directory64(std::uint64_t end) const {
-  constexpr std::uint64_t locator_bytes = 20;
-  if (end < locator_bytes) throw format_error(path(), "npz: zip64 locator expected");
-  const std::string bytes = part(end - locator_bytes, locator_bytes);
-  byte_reader locator(bytes, path());
-  if (locator.read<std::uint32_t>("npz: zip64 locator") != detail::zip64_locator)
-    throw format_error(path(), at_byte{end - locator_bytes}, "npz: zip64 locator expected");
-  locator.read<std::uint32_t>("npz: disk");
-  const auto at = locator.read<std::uint64_t>("npz: zip64 end");
-  const std::string record = part(at, 56);
-  byte_reader in(record, path());
-  if (in.read<std::uint32_t>("npz: zip64 end") != detail::zip64_end)
-    throw format_error(path(), at_byte{at}, "npz: zip64 end of the central directory expected");
-  in.take(28, "npz: zip64 end");
-  const auto members = in.read<std::uint64_t>("npz: members");
-  const auto size = in.read<std::uint64_t>("npz: directory size");
-  return {in.read<std::uint64_t>("npz: directory offset"), size, members};
-}
-
-inline npz_file::member npz_file::read_entry(byte_reader& in) {
-  if (in.read<std::uint32_t>("npz: entry") != detail::zip_central)
-    in.fail("npz: an entry of the central directory expected");
-  member m;
-  in.take(4, "npz: versions");
-  m.encrypted = (in.read<std::uint16_t>("npz: flags") & 1) != 0;
-  m.method = in.read<std::uint16_t>("npz: method");
-  in.take(4, "npz: time");
-  m.crc = in.read<std::uint32_t>("npz: checksum");
-  const auto packed = in.read<std::uint32_t>("npz: packed size");
-  const auto size = in.read<std::uint32_t>("npz: size");
-  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
-  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
-  const auto comment_bytes = in.read<std::uint16_t>("npz: comment length");
-  in.take(8, "npz: attributes");
-  const auto offset = in.read<std::uint32_t>("npz: offset");
-  m.name = in.take(name_bytes, "npz: name");
-  read_zip64(in.take(extra_bytes, "npz: extra field"), m, packed, size, offset, in);
-  in.take(comment_bytes, "npz: comment");
-  return m;
-}
-
-inline void npz_file::read_zip64(std::string_view extra,
-                                 member& m,
-                                 std::uint32_t packed,
-                                 std::uint32_t size,
-                                 std::uint32_t offset,
-                                 byte_reader& in) {
-  m.packed = packed;
-  m.size = size;
-  m.offset = offset;
-  while (extra.size() >= 4) {
-    const auto id = load<std::uint16_t>(extra.data());
-    const auto bytes = load<std::uint16_t>(extra.data() + 2);
-    std::string_view field = extra.substr(4, bytes);
-    extra.remove_prefix(std::min<std::size_t>(extra.size(), 4u + bytes));
-    if (id != 1) continue;
-    for (auto* value : {size == detail::in_zip64 ? &m.size : nullptr,
-                        packed == detail::in_zip64 ? &m.packed : nullptr,
-                        offset == detail::in_zip64 ? &m.offset : nullptr}) {
-      if (value == nullptr) continue;
-      if (field.size() < 8) in.fail("npz: the zip64 extra field is too short");
-      *value = load<std::uint64_t>(field.data());
-      field.remove_prefix(8);
-    }
-  }
-}
-
-inline const npz_file::member* npz_file::find(std::string_view name) const {
-  const auto m = std::find_if(members_.begin(), members_.end(),
-                              [&](const member& one) { return one.name == name; });
-  return m == members_.end() ? nullptr : &*m;
-}
-
-inline const npz_file::member& npz_file::get(std::string_view name) const {
-  if (const member* m = find(name)) return *m;
-  std::string known;
-  for (const member& m : members_) known += message(known.empty() ? "" : ", ", m.name);
-  throw argument_error(
-      message(path().string(), ": npz: no array '", name, "'; there are: ", known));
-}
-
-inline std::uint64_t npz_file::data_offset(const member& m) const {
-  constexpr std::uint64_t local_bytes = 30;
-  const std::string bytes = part(m.offset, local_bytes);
-  byte_reader in(bytes, path());
-  if (in.read<std::uint32_t>("npz: local header") != detail::zip_local)
-    fail(m, message("no local header at byte ", m.offset));
-  in.take(22, "npz: local header");
-  const auto name_bytes = in.read<std::uint16_t>("npz: name length");
-  const auto extra_bytes = in.read<std::uint16_t>("npz: extra length");
-  return m.offset + local_bytes + name_bytes + extra_bytes;
-}
-
-inline std::string npz_file::content(const member& m, std::uint64_t n) const {
-  constexpr std::uint16_t stored = 0;
-  constexpr std::uint16_t deflated = 8;
-  if (m.encrypted) fail(m, "encrypted");
-  if (m.method == deflated) return inflated(m, n);
-  if (m.method != stored)
-    fail(m, message("compression method ", m.method, " is not supported; 0 and 8 are"));
-  if (m.packed != m.size) fail(m, "stored, but of two sizes");
-  return part(data_offset(m), n);
-}
-
-inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
-  constexpr std::uint64_t best_ratio = 1032;  // of deflate
-  const std::uint64_t begin = data_offset(m);
-  if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
-  const double ratio = static_cast<double>(m.size) / static_cast<double>(m.packed + 1);
-  if (m.size / best_ratio > m.packed ||
-      (ratio > options_.max_ratio && m.size > options_.max_bytes)) {
-    fail(m, message("inflates from ", m.packed, " to ", m.size, " bytes, which no array does"));
-  }
-  std::string out(static_cast<std::size_t>(n), '\0');
-  std::size_t filled = 0;
-  detail::inflater inflate;
-  constexpr std::uint64_t block_bytes = std::uint64_t{1} << 20;
-  for (std::uint64_t at = 0; at < m.packed && filled < out.size();) {
-    const std::string block = part(begin + at, std::min(block_bytes, m.packed - at));
-    inflate.input(block);
-    if (!inflate.fill(out, filled)) fail(m, "the deflated data is damaged");
-    at += block.size();
-  }
-  if (filled < out.size())
-    fail(m, message(out.size(), " bytes expected, the deflated data holds ", filled));
-  return out;
-}
-
-inline void npz_file::fail(const member& m, std::string_view what) const {
-  throw format_error(path(), message("npz: '", m.name, "': ", what));
-}
-
-}  // namespace aib::io
-#endif
-
 // aib/io/pose_npz.hpp
 
 #if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
@@ -12187,6 +17438,12 @@ inline constexpr std::array<pose_key, 8> pose_keys{{
 /// Throws argument_error where no array of poses is found or its convention is not known.
 [[nodiscard]] posed_images read_pose_npz(const std::filesystem::path& path,
                                          const pose_npz_options& options = {});
+
+/// What CUT3R leaves in a folder `camera`: an NPZ file with one pose (and intrinsics) for each
+/// image. The images are named by the files' stems, in their order. Throws format_error where there
+/// is none or one of them has more than one pose.
+[[nodiscard]] posed_images read_pose_npz_folder(const std::filesystem::path& folder,
+                                                const pose_npz_options& options = {});
 
 namespace detail {
 
@@ -12267,6 +17524,27 @@ inline posed_images read_pose_npz(const std::filesystem::path& path,
                 " intrinsics belong to a larger image than the depth maps: scaled to these"));
   }
   return images;
+}
+
+inline posed_images read_pose_npz_folder(const std::filesystem::path& folder,
+                                         const pose_npz_options& options) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".npz") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  posed_images all;
+  for (const std::filesystem::path& file : files) {
+    const posed_images one = read_pose_npz(file, options);
+    if (one.trajectory.size() != 1)
+      throw format_error(file, message("one pose expected, found ", one.trajectory.size()));
+    all.trajectory.names.push_back(file.stem().string());
+    all.trajectory.world_from_camera.push_back(one.trajectory.world_from_camera.front());
+    all.cameras.insert(all.cameras.end(), one.cameras.begin(), one.cameras.end());
+  }
+  if (all.cameras.size() != files.size()) all.cameras.clear();
+  all.trajectory = checked_trajectory(std::move(all.trajectory), folder, "npz");
+  return all;
 }
 
 }  // namespace aib::io
@@ -12504,6 +17782,7 @@ struct trajectory_options {
 /// metashape          cameras.xml                                its own
 /// reality_capture    csv of internal and external parameters    its own
 /// npy, npz           N x 4 x 4 or N x 3 x 4                     as told, opencv
+/// npz                a folder of them, one an image (CUT3R)     as told, opencv
 ///
 /// Throws io_error, format_error as the readers do; argument_error where an option does not fit the
 /// format or the number of names is not that of the poses.
@@ -12600,7 +17879,9 @@ class pose_reader {
 
 #ifdef AIB_WITH_NPZ
   posed_images from_npz() const {
-    return read_pose_npz(path_, {options_.key, options_.convention, frame().axes});
+    const pose_npz_options npz{options_.key, options_.convention, frame().axes};
+    if (!std::filesystem::is_directory(path_)) return read_pose_npz(path_, npz);
+    return read_pose_npz_folder(folder_of_npz(path_), npz);
   }
 #else
   posed_images from_npz() const { needs_library(path_, "NPZ", "zlib"); }
@@ -12666,7 +17947,10 @@ inline pose::trajectory read_trajectory(const std::filesystem::path& path,
 inline std::map<std::string, math::camera> read_cameras(const std::filesystem::path& path,
                                                         const trajectory_options& options) {
   const posed_images images = read_posed_images(path, options);
-  if (images.cameras.empty()) throw format_error(path, "no intrinsics in the file");
+  if (images.cameras.empty()) {
+    throw format_error(path,
+                       "no intrinsics in the file, or none without the images' width and height");
+  }
   std::map<std::string, math::camera> cameras;
   const std::vector<std::string>& names = images.trajectory.names;
   for (std::size_t i = 0; i < images.cameras.size(); ++i)
@@ -12675,3 +17959,159 @@ inline std::map<std::string, math::camera> read_cameras(const std::filesystem::p
 }
 
 }  // namespace aib::io
+
+// aib/io/trajectory_write.hpp
+
+#ifdef AIB_WITH_JSON
+#endif
+
+namespace aib::io {
+
+/// How poses are written. What is left out is told from the path or is the format's own.
+struct trajectory_write_options {
+  std::optional<pose_format> format = {};
+  pose_frame frame = {};  ///< TUM and NPY only
+  colmap_encoding encoding = colmap_encoding::binary;
+};
+
+/// Writes poses (and cameras, where the format holds them): tum, kitti, colmap (needs names and
+/// cameras), transforms (needs names) or npy (N x 4 x 4).
+///
+/// Without a format: .json is transforms, .npy npy, .kitti kitti, .txt and .tum tum; a path without
+/// an extension is the folder of a COLMAP model.
+/// Throws argument_error where the format is not told or not written, or as the writers do.
+void write_trajectory(const std::filesystem::path& path,
+                      const posed_images& images,
+                      const trajectory_write_options& options = {});
+
+namespace detail {
+
+inline pose_format format_to_write(const std::filesystem::path& path) {
+  const auto extension = path.extension();
+  if (extension == ".json") return pose_format::transforms;
+  if (extension == ".npy") return pose_format::npy;
+  if (extension == ".kitti") return pose_format::kitti;
+  if (extension == ".txt" || extension == ".tum") return pose_format::tum;
+  if (extension.empty()) return pose_format::colmap;
+  throw argument_error(message("write_trajectory: ", path.string(),
+                               ": the extension .txt, .tum, .kitti, .json or .npy expected, or a "
+                               "format"));
+}
+
+}  // namespace detail
+
+inline void write_trajectory(const std::filesystem::path& path,
+                             const posed_images& images,
+                             const trajectory_write_options& options) {
+  const pose_format format = options.format ? *options.format : detail::format_to_write(path);
+  const pose::trajectory& t = images.trajectory;
+  const bool own_frame = options.frame.convention == pose_convention::world_from_camera &&
+                         options.frame.axes == camera_axes::opencv;
+  if (!own_frame && format != pose_format::tum && format != pose_format::npy)
+    throw argument_error(message("write_trajectory: ", name(format), " has its own frame"));
+  switch (format) {
+    case pose_format::tum:
+      return write_tum(path, t, {.frame = options.frame});
+    case pose_format::kitti:
+      return write_kitti(path, t);
+    case pose_format::npy:
+      return write_npy(path, array_of_poses(t, options.frame));
+    case pose_format::colmap:
+      return write_colmap(path, make_colmap_model(images), options.encoding);
+#ifdef AIB_WITH_JSON
+    case pose_format::transforms:
+      return write_transforms(path, images);
+#endif
+    default:
+      throw argument_error(message("write_trajectory: ", name(format),
+                                   " is not written; tum, kitti, colmap, transforms, npy are"));
+  }
+}
+
+}  // namespace aib::io
+
+// aib/io/npz_write.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::io {
+
+/// Writes named arrays as an NPZ file, stored, as numpy.savez does; dates are those of the zip
+/// format's beginning, so that the same arrays give the same bytes.
+/// Throws argument_error where an array, or all of them, take more than 4 GB.
+void write_npz(const std::filesystem::path& path,
+               const std::vector<std::pair<std::string, array>>& arrays);
+
+namespace detail {
+
+/// Builds a zip file of stored members.
+class zip_writer {
+ public:
+  void add(const std::string& name, const std::string& content) {
+    const std::uint64_t offset = file_.size();
+    if (offset + content.size() > max_offset)
+      throw argument_error("write_npz: more than 4 GB in one file");
+    const std::string member = member_fields(name, content);
+    store(file_, zip_local);
+    file_ += member + name + content;
+    store(directory_, zip_central);
+    store(directory_, version);
+    directory_ += member;
+    directory_ += std::string(10, '\0');  // comment, disk, attributes
+    store(directory_, static_cast<std::uint32_t>(offset));
+    directory_ += name;
+    ++members_;
+  }
+
+  std::string finish() {
+    const auto begin = static_cast<std::uint32_t>(file_.size());
+    file_ += directory_;
+    store(file_, zip_end);
+    store(file_, std::uint32_t{0});
+    store(file_, members_);
+    store(file_, members_);
+    store(file_, static_cast<std::uint32_t>(directory_.size()));
+    store(file_, begin);
+    store(file_, std::uint16_t{0});
+    return std::move(file_);
+  }
+
+ private:
+  static constexpr std::uint64_t max_offset = 0xfffffffe;
+  static constexpr std::uint16_t version = 20;
+
+  /// What the local header and the directory have in common.
+  static std::string member_fields(const std::string& name, const std::string& content) {
+    constexpr std::uint16_t january_1_1980 = 1 + (1 << 5);
+    std::string fields;
+    store(fields, version);
+    store(fields, std::uint32_t{0});  // flags, method
+    store(fields, std::uint16_t{0});  // time
+    store(fields, january_1_1980);
+    store(fields, crc32_of(content));
+    store(fields, static_cast<std::uint32_t>(content.size()));
+    store(fields, static_cast<std::uint32_t>(content.size()));
+    store(fields, static_cast<std::uint16_t>(name.size()));
+    store(fields, std::uint16_t{0});  // extra field
+    return fields;
+  }
+
+  std::string file_;
+  std::string directory_;
+  std::uint16_t members_ = 0;
+};
+
+}  // namespace detail
+
+inline void write_npz(const std::filesystem::path& path,
+                      const std::vector<std::pair<std::string, array>>& arrays) {
+  constexpr std::size_t max_members = 65534;
+  if (arrays.size() > max_members)
+    throw argument_error(
+        message("write_npz: at most ", max_members, " arrays, found ", arrays.size()));
+  detail::zip_writer zip;
+  for (const auto& [name, a] : arrays) zip.add(name + ".npy", npy_bytes(a));
+  write_file(path, zip.finish());
+}
+
+}  // namespace aib::io
+#endif
