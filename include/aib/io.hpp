@@ -32,7 +32,6 @@
 #include <aib/io/image.hpp>
 #include <aib/io/kitti.hpp>
 #include <aib/io/las.hpp>
-#include <aib/io/mapped_file.hpp>
 #include <aib/io/mesh.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/io/number_lines.hpp>

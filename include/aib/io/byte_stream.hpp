@@ -40,11 +40,25 @@ class byte_stream {
     return load<T>(take(sizeof(T), what), order);
   }
 
-  /// Text up to a NUL, which is skipped; at most 255 characters.
+  /// A count of records that take at least `record_bytes` each: refused where the file cannot hold
+  /// so many.
+  template <class T>
+  std::size_t read_count(std::size_t record_bytes, std::string_view what) {
+    const std::uint64_t at = offset();
+    const auto count = static_cast<std::uint64_t>(read_number<T>(what));
+    if (count > left() / record_bytes) {
+      throw format_error(file_->path(), at_byte{at},
+                         message(what, ": ", count, " records of at least ", record_bytes,
+                                 " bytes do not fit in the ", left(), " bytes left"));
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  /// Text up to a NUL, which is skipped; at most 4096 characters.
   std::string take_name(std::string_view what) {
     std::string name;
     for (char c; (c = *take(1, what)) != '\0'; name += c) {
-      if (name.size() == 255) fail(message(what, ": no end within 255 characters"));
+      if (name.size() == 4096) fail(message(what, ": no end within 4096 characters"));
     }
     return name;
   }

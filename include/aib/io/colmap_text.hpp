@@ -4,7 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/colmap_records.hpp>
-#include <aib/io/mapped_file.hpp>
+#include <aib/io/file.hpp>
 #include <aib/io/text.hpp>
 #include <aib/math/camera.hpp>
 
@@ -67,8 +67,8 @@ class field_reader {
 /// line before what is refused.
 template <class Record>
 void read_records(const std::filesystem::path& path, Record&& record) {
-  const mapped_file file(path);
-  line_reader lines(file.bytes(), path);
+  const std::string content = read_file(path);
+  line_reader lines(content, path);
   while (lines.next_content()) {
     field_reader fields(lines.line());
     try {
