@@ -72,6 +72,15 @@ class byte_reader {
     return static_cast<std::size_t>(count);
   }
 
+  /// Text up to a NUL, which is skipped.
+  std::string_view read_name(std::string_view what) {
+    const std::size_t end = bytes_.find('\0', position_);
+    if (end == std::string_view::npos) fail(message(what, ": no end of the name in the file"));
+    const std::string_view name = bytes_.substr(position_, end - position_);
+    position_ = end + 1;
+    return name;
+  }
+
   [[noreturn]] void fail(std::string_view what) const {
     throw format_error(path_, at_byte{position_}, what);
   }
