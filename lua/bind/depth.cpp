@@ -148,9 +148,10 @@ void bind_map(lua_State* state) {
             }
             return v(column - 1, row - 1);
           })
-      .method("scaled", {"factor"}, [](depth_map d, double factor) {
-        for (float& v : d.values) v = static_cast<float>(v * factor);
-        return d;
+      .method("scaled", {"factor"}, [](const depth_map& d, double factor) {
+        depth_map scaled = d;
+        for (float& v : scaled.values) v = static_cast<float>(v * factor);
+        return scaled;
       });
 }
 
