@@ -21,7 +21,9 @@ void bind_core(lua_State* state) {
       .set("version", AIB_VERSION)
       .set("instruction_set", instruction_set)
       .function("error_kind", {"message"},
-                [](session& s, const std::string& text) { return name_of(s.kind_of(text)); })
+                [](session& s, const sol::object& caught) {
+                  return name_of(s.kind_of(read_if<std::string>(caught).value_or("")));
+                })
       .function("type", {"value"}, [](lua_State* l, const sol::object& object) {
         const auto popper = sol::stack::push_pop(object);
         return type_name(l, lua_gettop(l));

@@ -4,15 +4,18 @@
 
 #include "../bind/kit.hpp"
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace aib::shell {
 
 namespace {
 
 /// Modules that serve the others; `require "aib.suggest"` finds them, `aib` does not show them.
-constexpr std::string_view inner_modules[] = {"command_line", "failure", "inputs", "suggest"};
+constexpr std::string_view inner_modules[] = {"command_line", "completion", "failure", "help",
+                                              "inputs",       "stubs",      "suggest"};
 
 /// "protocol" of "aib/protocol.lua", empty for files that are no member of `aib`.
 std::string member_name(std::string_view path) {
@@ -44,6 +47,41 @@ int search(lua_State* state) {
   });
 }
 
+/// Name of a bound function, nil of any other.
+std::optional<std::string> name_of(lua_State* state, int index) {
+  if (!lua_iscfunction(state, index) || !lua_getupvalue(state, index, 1)) return std::nullopt;
+  const void* upvalue = lua_touserdata(state, -1);
+  lua_pop(state, 1);
+  for (const bind::signature& s : bind::session::of(state).signatures())
+    if (&s == upvalue) return s.name;
+  return std::nullopt;
+}
+
+/// The module "aib.shell" serves help, completion and the tests of the stubs; no member of `aib`.
+void bind_introspection(lua_State* state) {
+  bind::module module(state, "shell");
+  module
+      .function("paths", {},
+                [] {
+                  std::vector<std::string> paths;
+                  for (const embedded_file& file : embedded_files()) paths.emplace_back(file.path);
+                  return paths;
+                })
+      .function("text", {"path"}, [](const std::string& path) { return embedded(path); })
+      .function("bound_names", {},
+                [](bind::session& s) {
+                  std::vector<std::string> names;
+                  for (const bind::signature& each : s.signatures()) names.push_back(each.name);
+                  return names;
+                })
+      .function("name_of", {"value"}, [](lua_State* l, const sol::object& value) {
+        const auto popper = sol::stack::push_pop(value);
+        return name_of(l, lua_gettop(l));
+      });
+  sol::state_view(state).registry()[LUA_LOADED_TABLE]["aib.shell"] = module.table();
+  bind::module(state, "").forget("shell");
+}
+
 }  // namespace
 
 std::string_view embedded(std::string_view path) {
@@ -62,6 +100,7 @@ void serve_embedded_modules(lua_State* state) {
   lua_pushcfunction(state, search);
   lua_rawseti(state, -2, 2);
   lua_pop(state, 1);
+  bind_introspection(state);
   bind::module root(state, "");
   for (const embedded_file& file : embedded_files()) {
     const std::string name = member_name(file.path);

@@ -8,6 +8,7 @@
 #include "globals.hpp"
 #include "interrupt.hpp"
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace aib::shell {
@@ -50,6 +51,34 @@ bool is_program(const sol::object& value) {
   return name == "aib.protocol" || name == "aib.test";
 }
 
+/// Lua's allocator. `left` is how many bytes there are still to give.
+void* allocate(void* left, void* block, std::size_t before, std::size_t after) {
+  auto& bytes = *static_cast<std::size_t*>(left);
+  if (!block) before = 0;  // then it is a type
+  if (after == 0) {
+    std::free(block);
+    bytes += before;
+    return nullptr;
+  }
+  if (after > before && after - before > bytes) return nullptr;
+  void* moved = std::realloc(block, after);
+  if (moved) bytes = bytes + before - after;
+  return moved;
+}
+
+/// warn(), off until "@on", as in lua. `on` is a bool.
+void warn(void* on, const char* text, int to_be_continued) {
+  static bool begun = false;
+  bool& shown = *static_cast<bool*>(on);
+  const std::string_view control = begun || to_be_continued ? "" : text;
+  if (control == "@on" || control == "@off") {
+    shown = control == "@on";
+  } else if (shown) {
+    std::fprintf(stderr, "%s%s%s", begun ? "" : "Lua warning: ", text, to_be_continued ? "" : "\n");
+  }
+  begun = to_be_continued != 0;
+}
+
 }  // namespace
 
 void print_error(std::string_view text) {
@@ -57,7 +86,9 @@ void print_error(std::string_view text) {
   std::fprintf(stderr, "aib-lua: %.*s\n", static_cast<int>(text.size()), text.data());
 }
 
-interpreter::interpreter(bool ignore_environment) {
+interpreter::interpreter(bool ignore_environment, std::size_t memory)
+    : memory_left_(memory), lua_(sol::default_at_panic, allocate, &memory_left_) {
+  lua_setwarnf(state(), warn, &warnings_shown_);
   session_.attach(state());
   if (ignore_environment) lua_.registry()["LUA_NOENV"] = true;
   lua_.open_libraries();
@@ -75,9 +106,11 @@ void interpreter::set_arguments(const invocation& call) {
   lua_["arg"] = arg;
 }
 
-void interpreter::preload() {
-  bind::push(state(), bind::module(state(), "").table());
-  lua_setglobal(state(), "aib");
+void interpreter::preload() { set_global("aib", bind::module(state(), "").table()); }
+
+void interpreter::set_global(const char* name, const sol::object& value) {
+  bind::push(state(), value);
+  lua_setglobal(state(), name);
 }
 
 int interpreter::require(const std::string& text) {
@@ -128,7 +161,8 @@ interpreter::outcome interpreter::load_and_run(const std::filesystem::path& scri
     const std::string before = lua_["package"]["path"];
     lua_["package"]["path"] = folder + "/?.lua;" + folder + "/?/init.lua;" + before;
   }
-  const int status = luaL_loadfilex(state(), from_input ? nullptr : script.c_str(), nullptr);
+  const int status =
+      luaL_loadfilex(state(), from_input ? nullptr : script.c_str(), text_only_ ? "t" : nullptr);
   const sol::load_result chunk(state(), lua_gettop(state()), 1, 1,
                                static_cast<sol::load_status>(status));
   return call(chunk, arguments);

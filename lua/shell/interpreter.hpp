@@ -5,7 +5,9 @@
 #include "../bind/kit/session.hpp"
 #include "../bind/kit/sol.hpp"
 #include "invocation.hpp"
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,7 +25,9 @@ enum exit_code {
 /// Lua with the libraries, the module `aib` and strict globals.
 class interpreter {
  public:
-  explicit interpreter(bool ignore_environment = false);
+  /// memory  bytes that Lua values may take
+  explicit interpreter(bool ignore_environment = false,
+                       std::size_t memory = std::numeric_limits<std::size_t>::max());
 
   /// Sets the global `arg` as lua does: the script is arg[0], its arguments follow.
   void set_arguments(const invocation& call);
@@ -40,6 +44,8 @@ class interpreter {
   std::string title_of(const std::filesystem::path& script);
   /// No progress.
   void silence();
+  /// Scripts in bytecode are refused from now on.
+  void refuse_bytecode() { text_only_ = true; }
 
   /// Calls a loaded chunk, the function; prints the error where there is one. `results` are those
   /// of the call.
@@ -49,6 +55,9 @@ class interpreter {
   };
   outcome call(const sol::load_result& chunk, const std::vector<std::string>& arguments = {});
 
+  void set_global(const char* name, const sol::object& value);
+
+  sol::state_view view() { return lua_; }
   lua_State* state() { return lua_.lua_state(); }
   bind::session& session() { return session_; }
 
@@ -57,6 +66,9 @@ class interpreter {
   outcome load_and_run(const std::filesystem::path& script,
                        const std::vector<std::string>& arguments);
 
+  bool text_only_ = false;
+  bool warnings_shown_ = false;
+  std::size_t memory_left_;
   bind::session session_;  // outlives the objects that the state collects at its end
   sol::state lua_;
 };

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 
+#include "sandbox.hpp"
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ struct invocation {
   bool list = false;
   bool quiet = false;
   unsigned threads = 0;
+  std::optional<sandbox_options> sandbox = {};
 
   /// The script: a path, a protocol's name, or "-" for standard input.
   [[nodiscard]] std::optional<std::string> script() const;

@@ -9,6 +9,7 @@
 #include "invocation.hpp"
 #include "protocols.hpp"
 #include "repl.hpp"
+#include "sandbox.hpp"
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -35,6 +36,22 @@ fs::path resolve(const std::string& script, bool ignore_environment) {
   folders.erase(folders.begin());  // the working folder's scripts need not be protocols
   throw usage_error(message("no script or protocol '", script, "'",
                             bind::suggestion(script, protocol_names(folders))));
+}
+
+/// Runs a script that somebody else wrote.
+int run_confined(const invocation& call) {
+  const fs::path script = resolve(*call.script(), call.ignore_environment);
+  sandbox_options limits = *call.sandbox;
+  if (script != "-")
+    limits.readable.push_back(script.has_parent_path() ? script.parent_path() : ".");
+  interpreter lua(true, limits.memory);
+  lua.session().threads = call.threads;
+  if (call.quiet) lua.silence();
+  lua.set_arguments(call);
+  lua.refuse_bytecode();
+  confine_lua(lua.state(), limits);
+  confine_process(limits);
+  return lua.run_script(script, call.arguments());
 }
 
 int run_steps(interpreter& lua, const std::vector<invocation::step>& steps) {
@@ -71,6 +88,7 @@ int run(const invocation& call) {
   const bool nothing_to_do = !call.script() && call.steps.empty();
   if (call.version && nothing_to_do && !call.interactive) return exit_ok;
 
+  if (call.sandbox) return run_confined(call);
   interpreter lua(call.ignore_environment);
   lua.session().threads = call.threads;
   if (call.quiet) lua.silence();

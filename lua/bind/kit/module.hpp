@@ -40,6 +40,12 @@ class module {
   /// A member that is `require "aib.module.name"`, loaded when it is first asked for.
   module& lazy(const char* name);
 
+  /// Takes a member out again.
+  module& forget(const char* name) {
+    table_.raw_set(name, sol::lua_nil);
+    return *this;
+  }
+
   const sol::table& table() const { return table_; }
 
  private:
