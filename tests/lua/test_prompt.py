@@ -63,7 +63,7 @@ class Prompt:
     def end(self):
         """Types Ctrl-D, again where it came before the editor had the terminal, which swallows it."""
         for _ in range(PATIENCE_S):
-            self.send("\x04")
+            self.send("\x15\x04")  # Ctrl-U clears what an early one left on the line
             deadline = time.monotonic() + 1
             while self.read_more(deadline):
                 pass
