@@ -32,6 +32,9 @@ ALLOWED = {
     "unsupported_ok": {"read", "refused", "unsupported"},
 }
 
+# A fuzzer's file whose list of channels claims 800 MB: OpenEXR overlooks it, aib refuses it.
+STRICTER = {"openexr-tests__comp_bad_pos_bounds_pxr24.exr"}
+
 
 def limit_addresses():
     resource.setrlimit(resource.RLIMIT_AS, (GIBIBYTE, GIBIBYTE))
@@ -78,7 +81,7 @@ def main(shared, aib_lua, *flags):
         print("SKIPPED: zoo: the shared folder is not here")
         return 77
     tries = [
-        (entry["format"].split()[0], entry["must"], path)
+        (entry["format"].split()[0], "fail" if path.name in STRICTER else entry["must"], path)
         for entry in json.loads((golden / "manifest.json").read_text())["zoo"]
         for path in models_of(golden / entry["file"])
     ]
