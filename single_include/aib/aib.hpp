@@ -49,7 +49,6 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <thread>
@@ -7523,6 +7522,11 @@ inline bool orthogonalize(std::vector<Eigen::Vector3d>& rows, Eigen::Matrix3d& a
   return true;
 }
 
+inline std::string direction_text(const Eigen::Vector3d& v) {
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
+  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
+}
+
 }  // namespace detail
 
 /// How points lie about their mean: along which axes, how far.
@@ -7659,8 +7663,8 @@ inline void refuse_a_line(std::string_view who, std::string_view side, const spr
   if (!(s.singular_values[0] > s.rounding))
     throw undefined_error(message(who, ": the positions of the ", side, " are all in one place"));
   throw undefined_error(message(who, ": the positions of the ", side,
-                                " lie on a line: the turn about (", axis[0], ", ", axis[1], ", ",
-                                axis[2], ") is free"));
+                                " lie on a line: the turn about ", direction_text(axis),
+                                " is free"));
 }
 
 inline void refuse_as_evo(const Eigen::Matrix3d& covariance) {
@@ -7952,11 +7956,6 @@ inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t pa
   return std::min(right_angle, std::sqrt(sse / freedom) / lever);
 }
 
-inline std::string vector_text(const Eigen::Vector3d& v) {
-  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
-  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
-}
-
 /// The scale that the median distances from the median positions tell.
 inline double scale_of_medians(std::span<const Eigen::Vector3d> estimate,
                                std::span<const Eigen::Vector3d> reference) {
@@ -8017,8 +8016,8 @@ inline alignment trajectory(const pose::trajectory& estimate,
     if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
       const Eigen::Vector3d axis = s_reference.axes.col(0);
       out.warnings.push_back(message(
-          "positions lie nearly on a line (condition ", std::round(out.condition),
-          "): the turn about ", detail::vector_text(axis), " is known to +-",
+          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
+          "(condition ", std::round(out.condition), "), is known to +-",
           std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
           " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
     }
@@ -10357,11 +10356,25 @@ class byte_stream {
     return load<T>(take(sizeof(T), what), order);
   }
 
-  /// Text up to a NUL, which is skipped; at most 255 characters.
+  /// A count of records that take at least `record_bytes` each: refused where the file cannot hold
+  /// so many.
+  template <class T>
+  std::size_t read_count(std::size_t record_bytes, std::string_view what) {
+    const std::uint64_t at = offset();
+    const auto count = static_cast<std::uint64_t>(read_number<T>(what));
+    if (count > left() / record_bytes) {
+      throw format_error(file_->path(), at_byte{at},
+                         message(what, ": ", count, " records of at least ", record_bytes,
+                                 " bytes do not fit in the ", left(), " bytes left"));
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  /// Text up to a NUL, which is skipped; at most 4096 characters.
   std::string take_name(std::string_view what) {
     std::string name;
     for (char c; (c = *take(1, what)) != '\0'; name += c) {
-      if (name.size() == 255) fail(message(what, ": no end within 255 characters"));
+      if (name.size() == 4096) fail(message(what, ": no end within 4096 characters"));
     }
     return name;
   }
@@ -12877,41 +12890,6 @@ inline void add_rig(std::map<std::uint32_t, rig>& rigs, std::uint32_t id, rig r)
 
 }  // namespace aib::io::colmap
 
-// aib/io/mapped_file.hpp
-
-namespace aib::io {
-
-/// A file as bytes in memory, of which only what is looked at is read from the disk. Meant for
-/// large files whose greater part is skipped. Throws io_error as input_file does.
-///
-/// The file must not be shortened by another program meanwhile: reading beyond its new end ends the
-/// process.
-class mapped_file {
- public:
-  explicit mapped_file(const std::filesystem::path& path) : file_(path) {
-    size_ = static_cast<std::size_t>(file_.size());
-    if (size_ == 0) return;
-    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file_.descriptor(), 0);
-    if (data_ == MAP_FAILED) throw io_error(path, message("cannot map: ", std::strerror(errno)));
-    ::posix_madvise(data_, size_, POSIX_MADV_SEQUENTIAL);
-  }
-  mapped_file(const mapped_file&) = delete;
-  mapped_file& operator=(const mapped_file&) = delete;
-  ~mapped_file() {
-    if (size_ > 0) ::munmap(data_, size_);
-  }
-
-  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
-  [[nodiscard]] std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
-
- private:
-  input_file file_;
-  void* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-}  // namespace aib::io
-
 // aib/io/colmap_binary.hpp
 
 /// COLMAP's binary files, little endian, of every version to 4.2.
@@ -12935,11 +12913,11 @@ void read_records(const std::filesystem::path& path,
                   std::size_t record_bytes,
                   std::string_view what,
                   Record&& record) {
-  const mapped_file file(path);
-  byte_reader in(file.bytes(), path);
+  const input_file file(path);
+  byte_stream in(file);
   const auto count = in.read_count<std::uint64_t>(record_bytes, message("colmap: ", what));
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = in.position();
+    const std::size_t begin = in.offset();
     try {
       record(in);
     } catch (const argument_error& e) {
@@ -12950,42 +12928,42 @@ void read_records(const std::filesystem::path& path,
     in.fail(message("colmap: ", in.left(), " bytes after the last of ", count, " ", what));
 }
 
-inline Eigen::Vector3d read_vector(byte_reader& in, std::string_view what) {
-  const auto x = in.read<double>(what);
-  const auto y = in.read<double>(what);
-  const auto z = in.read<double>(what);
+inline Eigen::Vector3d read_vector(byte_stream& in, std::string_view what) {
+  const auto x = in.read_number<double>(what);
+  const auto y = in.read_number<double>(what);
+  const auto z = in.read_number<double>(what);
   return {x, y, z};
 }
 
-inline math::rigid3 read_pose(byte_reader& in) {
+inline math::rigid3 read_pose(byte_stream& in) {
   math::quaternion q;
-  q.w = in.read<double>("colmap: quaternion");
-  q.x = in.read<double>("colmap: quaternion");
-  q.y = in.read<double>("colmap: quaternion");
-  q.z = in.read<double>("colmap: quaternion");
+  q.w = in.read_number<double>("colmap: quaternion");
+  q.x = in.read_number<double>("colmap: quaternion");
+  q.y = in.read_number<double>("colmap: quaternion");
+  q.z = in.read_number<double>("colmap: quaternion");
   return written_pose(q, read_vector(in, "colmap: translation"));
 }
 
-inline sensor read_sensor(byte_reader& in) {
-  const auto kind = in.read<std::int32_t>("colmap: kind of sensor");
-  return {kind, in.read<std::uint32_t>("colmap: sensor id")};
+inline sensor read_sensor(byte_stream& in) {
+  const auto kind = in.read_number<std::int32_t>("colmap: kind of sensor");
+  return {kind, in.read_number<std::uint32_t>("colmap: sensor id")};
 }
 
 }  // namespace detail
 
 inline std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem::path& path) {
   std::map<std::uint32_t, math::camera> cameras;
-  detail::read_records(path, 40, "cameras", [&](byte_reader& in) {
-    const auto id = in.read<std::uint32_t>("colmap: camera id");
-    const auto model_id = in.read<std::int32_t>("colmap: camera model");
+  detail::read_records(path, 40, "cameras", [&](byte_stream& in) {
+    const auto id = in.read_number<std::uint32_t>("colmap: camera id");
+    const auto model_id = in.read_number<std::int32_t>("colmap: camera model");
     const auto model = math::find_camera_model(model_id);
     if (!model)
       throw argument_error(message("camera ", id, " has model ", model_id, ", 0 to 17 expected"));
     math::camera camera{*model, 0, 0, {}};
-    camera.width = in.read<std::uint64_t>("colmap: camera width");
-    camera.height = in.read<std::uint64_t>("colmap: camera height");
+    camera.width = in.read_number<std::uint64_t>("colmap: camera width");
+    camera.height = in.read_number<std::uint64_t>("colmap: camera height");
     for (std::size_t i = 0; i < math::info(*model).n_parameters; ++i)
-      camera.parameters.push_back(in.read<double>("colmap: camera parameters"));
+      camera.parameters.push_back(in.read_number<double>("colmap: camera parameters"));
     add_camera(cameras, id, std::move(camera));
   });
   return cameras;
@@ -12994,14 +12972,14 @@ inline std::map<std::uint32_t, math::camera> read_cameras(const std::filesystem:
 inline std::vector<image> read_images(const std::filesystem::path& path) {
   constexpr std::size_t observation_bytes = 24;
   std::vector<image> images;
-  detail::read_records(path, 73, "images", [&](byte_reader& in) {
+  detail::read_records(path, 73, "images", [&](byte_stream& in) {
     image i;
-    i.id = in.read<std::uint32_t>("colmap: image id");
+    i.id = in.read_number<std::uint32_t>("colmap: image id");
     i.camera_from_world = detail::read_pose(in);
-    i.camera_id = in.read<std::uint32_t>("colmap: camera id");
-    i.name = in.read_name("colmap: image name");
+    i.camera_id = in.read_number<std::uint32_t>("colmap: camera id");
+    i.name = in.take_name("colmap: image name");
     const auto n = in.read_count<std::uint64_t>(observation_bytes, "colmap: observations");
-    in.take(n * observation_bytes, "colmap: observations");
+    in.skip(n * observation_bytes, "colmap: observations");
     images.push_back(std::move(i));
   });
   return images;
@@ -13009,14 +12987,14 @@ inline std::vector<image> read_images(const std::filesystem::path& path) {
 
 inline std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path) {
   std::map<std::uint32_t, rig> rigs;
-  detail::read_records(path, 8, "rigs", [&](byte_reader& in) {
+  detail::read_records(path, 8, "rigs", [&](byte_stream& in) {
     rig r;
-    const auto id = in.read<std::uint32_t>("colmap: rig id");
+    const auto id = in.read_number<std::uint32_t>("colmap: rig id");
     const auto n_sensors = in.read_count<std::uint32_t>(8, "colmap: sensors of a rig");
     if (n_sensors > 0) r.reference = detail::read_sensor(in);
     for (std::size_t i = 1; i < n_sensors; ++i) {
       const sensor s = detail::read_sensor(in);
-      if (in.read<std::uint8_t>("colmap: whether a sensor has a pose") != 0)
+      if (in.read_number<std::uint8_t>("colmap: whether a sensor has a pose") != 0)
         r.sensor_from_rig[s] = detail::read_pose(in);
     }
     add_rig(rigs, id, std::move(r));
@@ -13026,15 +13004,15 @@ inline std::map<std::uint32_t, rig> read_rigs(const std::filesystem::path& path)
 
 inline std::vector<frame> read_frames(const std::filesystem::path& path) {
   std::vector<frame> frames;
-  detail::read_records(path, 68, "frames", [&](byte_reader& in) {
+  detail::read_records(path, 68, "frames", [&](byte_stream& in) {
     frame f;
-    in.read<std::uint32_t>("colmap: frame id");
-    f.rig_id = in.read<std::uint32_t>("colmap: rig id");
+    in.read_number<std::uint32_t>("colmap: frame id");
+    f.rig_id = in.read_number<std::uint32_t>("colmap: rig id");
     f.rig_from_world = detail::read_pose(in);
     const auto n = in.read_count<std::uint32_t>(16, "colmap: images of a frame");
     for (std::size_t i = 0; i < n; ++i) {
       const sensor s = detail::read_sensor(in);
-      f.data.emplace_back(s, in.read<std::uint64_t>("colmap: image id"));
+      f.data.emplace_back(s, in.read_number<std::uint64_t>("colmap: image id"));
     }
     frames.push_back(std::move(f));
   });
@@ -13044,23 +13022,23 @@ inline std::vector<frame> read_frames(const std::filesystem::path& path) {
 inline points read_points(const std::filesystem::path& path) {
   constexpr std::size_t track_bytes = 8;
   points p;
-  detail::read_records(path, 51, "points", [&](byte_reader& in) {
-    in.read<std::uint64_t>("colmap: point id");
+  detail::read_records(path, 51, "points", [&](byte_stream& in) {
+    in.read_number<std::uint64_t>("colmap: point id");
     p.positions.push_back(detail::read_vector(in, "colmap: point"));
     cloud::color color;
-    for (std::uint8_t& channel : color) channel = in.read<std::uint8_t>("colmap: color");
+    for (std::uint8_t& channel : color) channel = in.read_number<std::uint8_t>("colmap: color");
     p.colors.push_back(color);
-    p.errors_px.push_back(in.read<double>("colmap: point error"));
+    p.errors_px.push_back(in.read_number<double>("colmap: point error"));
     const auto n = in.read_count<std::uint64_t>(track_bytes, "colmap: track");
-    in.take(n * track_bytes, "colmap: track");
+    in.skip(n * track_bytes, "colmap: track");
     p.track_lengths.push_back(n);
   });
   return p;
 }
 
 inline std::size_t count_points(const std::filesystem::path& path) {
-  const mapped_file file(path);
-  return byte_reader(file.bytes(), path).read_count<std::uint64_t>(51, "colmap: points");
+  const input_file file(path);
+  return byte_stream(file).read_count<std::uint64_t>(51, "colmap: points");
 }
 
 }  // namespace aib::io::colmap::binary
@@ -13116,8 +13094,8 @@ class field_reader {
 /// line before what is refused.
 template <class Record>
 void read_records(const std::filesystem::path& path, Record&& record) {
-  const mapped_file file(path);
-  line_reader lines(file.bytes(), path);
+  const std::string content = read_file(path);
+  line_reader lines(content, path);
   while (lines.next_content()) {
     field_reader fields(lines.line());
     try {

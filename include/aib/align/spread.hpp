@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,11 @@ inline bool orthogonalize(std::vector<Eigen::Vector3d>& rows, Eigen::Matrix3d& a
   for (Eigen::Vector3d& row : rows) turn(row);
   for (int r = 0; r < 3; ++r) turn(axes.row(r));
   return true;
+}
+
+inline std::string direction_text(const Eigen::Vector3d& v) {
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
+  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
 }
 
 }  // namespace detail

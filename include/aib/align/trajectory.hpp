@@ -73,11 +73,6 @@ inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t pa
   return std::min(right_angle, std::sqrt(sse / freedom) / lever);
 }
 
-inline std::string vector_text(const Eigen::Vector3d& v) {
-  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
-  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
-}
-
 /// The scale that the median distances from the median positions tell.
 inline double scale_of_medians(std::span<const Eigen::Vector3d> estimate,
                                std::span<const Eigen::Vector3d> reference) {
@@ -138,8 +133,8 @@ inline alignment trajectory(const pose::trajectory& estimate,
     if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
       const Eigen::Vector3d axis = s_reference.axes.col(0);
       out.warnings.push_back(message(
-          "positions lie nearly on a line (condition ", std::round(out.condition),
-          "): the turn about ", detail::vector_text(axis), " is known to +-",
+          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
+          "(condition ", std::round(out.condition), "), is known to +-",
           std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
           " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
     }

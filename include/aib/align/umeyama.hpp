@@ -93,8 +93,8 @@ inline void refuse_a_line(std::string_view who, std::string_view side, const spr
   if (!(s.singular_values[0] > s.rounding))
     throw undefined_error(message(who, ": the positions of the ", side, " are all in one place"));
   throw undefined_error(message(who, ": the positions of the ", side,
-                                " lie on a line: the turn about (", axis[0], ", ", axis[1], ", ",
-                                axis[2], ") is free"));
+                                " lie on a line: the turn about ", direction_text(axis),
+                                " is free"));
 }
 
 inline void refuse_as_evo(const Eigen::Matrix3d& covariance) {

@@ -17,6 +17,7 @@ local depth_map = {}
 ---@return number depth
 function depth_map:at(column, row) end
 
+---The depth map with every depth times a factor.
 ---@param factor number
 ---@return aib.DepthMap scaled
 function depth_map:scaled(factor) end
@@ -88,23 +89,24 @@ function depth.errors(estimate, reference, options) end
 function depth.error_image(estimate, reference, options) end
 
 ---Errors of many frames, mean of frames or pooled over pixels.
----@class aib.DepthAccumulator
+---@class aib.Accumulator
 local accumulator = {}
 
+---Starts the errors of many frames.
 ---@param options? aib.DepthErrorOptions
----@return aib.DepthAccumulator accumulator
+---@return aib.Accumulator accumulator
 function depth.accumulate(options) end
 
 ---Adds a frame. One without a valid pixel is kept and named, and spoils no mean.
 ---@param estimate aib.DepthMap
 ---@param reference aib.DepthMap
 ---@param options? { name: string, mask: aib.LabelImage }
----@return aib.DepthAccumulator self
+---@return aib.Accumulator self
 function accumulator:add(estimate, reference, options) end
 
 ---Appends the frames of another accumulator.
----@param other aib.DepthAccumulator
----@return aib.DepthAccumulator self
+---@param other aib.Accumulator
+---@return aib.Accumulator self
 function accumulator:merge(other) end
 
 ---Mean of the frames, or errors over all pixels. Has `n_frames`, `n_defined` and `undefined`, the names of frames
@@ -125,24 +127,28 @@ function accumulator:frames(options) end
 function accumulator:interval(options) end
 
 ---Fits scale (and shift) over a batch or a sequence.
----@class aib.DepthFitter
+---@class aib.Fitter
 ---@field n_valid integer
 local fitter = {}
 
+---Starts a fit over many frames.
 ---@param options? { align: string, min: number, max: number }  # align is "median" by default
----@return aib.DepthFitter fitter
+---@return aib.Fitter fitter
 function depth.fit(options) end
 
+---Adds the valid pixels of a frame.
 ---@param estimate aib.DepthMap
 ---@param reference aib.DepthMap
 ---@param options? { mask: aib.LabelImage }
----@return aib.DepthFitter self
+---@return aib.Fitter self
 function fitter:add(estimate, reference, options) end
 
----@param other aib.DepthFitter
----@return aib.DepthFitter self
+---Adds the frames of another fit.
+---@param other aib.Fitter
+---@return aib.Fitter self
 function fitter:merge(other) end
 
+---The scale and shift that fit all frames best.
 ---@return aib.Affine transform
 function fitter:result() end
 

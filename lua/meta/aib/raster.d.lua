@@ -22,6 +22,7 @@ function image:at(column, row) end
 ---@field height integer
 local label_image = {}
 
+---The label of a pixel.
 ---@param column integer
 ---@param row integer
 ---@return integer label
