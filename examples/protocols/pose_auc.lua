@@ -10,7 +10,7 @@ local trajectories = require "aib.trajectories"
 local function score(estimate, input)
   local cell, est, ref = estimate.cell, estimate.est, estimate.ref
   for _, convention in ipairs(input.convention) do
-    local whole = convention == "colmap"  -- missing frames count there
+    local whole = convention == "colmap" and #est.names > 0  -- missing frames count there
     local auc, reason = cell:attempt(function()
       return aib.pose.auc(whole and estimate.trajectory or est, whole and estimate.reference or ref,
         { convention = convention, max_deg = input.max_deg })

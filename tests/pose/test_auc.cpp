@@ -218,6 +218,10 @@ TEST_CASE("colmap counts the pairs of a missing frame as failed") {
   CHECK(r.n_pairs == 20);
   CHECK(r.n_unregistered == 1);
   CHECK_THROWS_AS(pose::auc(select(reference, {0, 1, 2, 4}), reference), argument_error);
+  pose::trajectory nameless = select(reference, {0, 1, 2, 4});
+  nameless.names.clear();
+  CHECK_THROWS_AS(pose::auc(nameless, reference, {.convention = auc_convention::colmap}),
+                  argument_error);
 }
 
 TEST_CASE("auc is the same bits for any number of threads") {

@@ -41,8 +41,8 @@ struct auc_result {
 
 /// Area under the recall curve of relative pose errors over all frame pairs, 0..max_deg degrees.
 ///
-/// estimate    associated with the reference (`colmap` takes the whole reference and matches names:
-///             frames that are missing score there); its world and scale are its own
+/// estimate    associated with the reference (`colmap` takes the whole reference where both have
+///             names: frames that are missing score there); its world and scale are its own
 ///
 /// Pairs without a direction (see baselines) stay in the denominator; the folding conventions
 /// take them for 90 degrees, as their sources do. Invariant to a similarity of either side (`da3`
@@ -166,6 +166,7 @@ inline auc_result colmap_auc(const trajectory& estimate,
                              const trajectory& reference,
                              const auc_options& options) {
   const bool named = !estimate.names.empty() && !reference.names.empty();
+  if (!named) check_associated("auc", estimate, reference);
   std::size_t total = 0;  // reference frames, registered or not
   for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
   const association matched =
