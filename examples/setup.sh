@@ -22,6 +22,7 @@ meson                program meson
 ninja-build          program ninja
 pkg-config           program pkg-config
 libeigen3-dev        module eigen3 3.4
+libnanoflann-dev     module nanoflann
 liblua5.4-dev        module lua5.4
 sol2-dev             module sol2 3.3
 zlib1g-dev           module zlib

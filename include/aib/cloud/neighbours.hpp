@@ -49,13 +49,26 @@ class neighbours {
   /// How many points lie nearer than `radius`.
   [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
     const Eigen::Vector3d local = p - points_.origin;
-    std::vector<std::pair<std::size_t, double>> found;
-    nanoflann::SearchParams unsorted;
-    unsorted.sorted = false;
-    return tree_.radiusSearch(local.data(), radius * radius, found, unsorted);
+    counter inside{radius * radius};
+    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
+    return inside.n;
   }
 
  private:
+  /// A result set, which is the same in every version of nanoflann.
+  struct counter {
+    double squared_radius;
+    std::size_t n = 0;
+
+    bool addPoint(double squared, std::size_t) {
+      n += squared < squared_radius ? 1 : 0;
+      return true;
+    }
+    [[nodiscard]] double worstDist() const { return squared_radius; }
+    [[nodiscard]] std::size_t size() const { return n; }
+    [[nodiscard]] bool full() const { return true; }
+  };
+
   struct finite_positions {
     Eigen::Vector3d origin;
     std::vector<Eigen::Vector3d> position;
