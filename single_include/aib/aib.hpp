@@ -3982,6 +3982,7 @@ inline raster::rgb hatch(std::size_t x, std::size_t y) {
 /// "12.3": four characters or so, plain notation.
 inline std::string short_number(double value) {
   const double size = std::abs(value);
+  if (size == 0) return "0";
   const int digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 4;
   char text[64];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
@@ -5337,8 +5338,8 @@ struct auc_result {
 
 /// Area under the recall curve of relative pose errors over all frame pairs, 0..max_deg degrees.
 ///
-/// estimate    associated with the reference (`colmap` takes the whole reference and matches names:
-///             frames that are missing score there); its world and scale are its own
+/// estimate    associated with the reference (`colmap` takes the whole reference where both have
+///             names: frames that are missing score there); its world and scale are its own
 ///
 /// Pairs without a direction (see baselines) stay in the denominator; the folding conventions
 /// take them for 90 degrees, as their sources do. Invariant to a similarity of either side (`da3`
@@ -5462,6 +5463,7 @@ inline auc_result colmap_auc(const trajectory& estimate,
                              const trajectory& reference,
                              const auc_options& options) {
   const bool named = !estimate.names.empty() && !reference.names.empty();
+  if (!named) check_associated("auc", estimate, reference);
   std::size_t total = 0;  // reference frames, registered or not
   for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
   const association matched =
@@ -7003,13 +7005,26 @@ class neighbours {
   /// How many points lie nearer than `radius`.
   [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
     const Eigen::Vector3d local = p - points_.origin;
-    std::vector<std::pair<std::size_t, double>> found;
-    nanoflann::SearchParams unsorted;
-    unsorted.sorted = false;
-    return tree_.radiusSearch(local.data(), radius * radius, found, unsorted);
+    counter inside{radius * radius};
+    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
+    return inside.n;
   }
 
  private:
+  /// A result set, which is the same in every version of nanoflann.
+  struct counter {
+    double squared_radius;
+    std::size_t n = 0;
+
+    bool addPoint(double squared, std::size_t) {
+      n += squared < squared_radius ? 1 : 0;
+      return true;
+    }
+    [[nodiscard]] double worstDist() const { return squared_radius; }
+    [[nodiscard]] std::size_t size() const { return n; }
+    [[nodiscard]] bool full() const { return true; }
+  };
+
   struct finite_positions {
     Eigen::Vector3d origin;
     std::vector<Eigen::Vector3d> position;

@@ -53,6 +53,7 @@ inline raster::rgb hatch(std::size_t x, std::size_t y) {
 /// "12.3": four characters or so, plain notation.
 inline std::string short_number(double value) {
   const double size = std::abs(value);
+  if (size == 0) return "0";
   const int digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 4;
   char text[64];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
