@@ -116,7 +116,7 @@ def umbrellas(known):
         if headers:
             made[f"aib/{folder}.hpp"] = umbrella(f"{about[0].upper()}{about[1:]}.", headers, known)
             folders.append(f"aib/{folder}.hpp")
-    lines = "".join(f"#include <{folder}>\n" for folder in folders)
+    lines = "".join(f"#include <{folder}>\n" for folder in sorted(folders))
     made["aib/aib.hpp"] = f"{HEAD}#pragma once\n\n/// @file\n/// The whole library.\n\n{lines}"
     return made
 

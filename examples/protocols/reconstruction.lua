@@ -34,7 +34,8 @@ local function add_comparison(compared, input, report)
   end
   for _, tau in ipairs(input.tau) do
     for _, name in ipairs { "precision", "recall", "f_score" } do
-      report:add(("cloud.%s@%gm"):format(name, tau), compared[name][tau], { better = "higher", n = compared.n_estimate })
+      local metric = ("cloud.%s@%gm"):format(name, tau)
+      report:add(metric, compared[name][tau], { better = "higher", n = compared.n_estimate })
     end
   end
   if input.max_distance > 0 then
@@ -59,10 +60,10 @@ return aib.protocol {
     estimate = { kind = "file", position = 1, help = "reconstructed cloud" },
     reference = { kind = "file", position = 2, help = "cloud or mesh of the truth" },
     tau = { kind = "list", of = "number", unit = "m", default = {}, help = "thresholds of precision, recall, F-score" },
-    max_distance = { kind = "number", unit = "m", default = 0, min = 0, help = "distances from here on are cut; 0: none" },
+    max_distance = { kind = "number", unit = "m", default = 0, min = 0, help = "cuts distances from here on; 0: none" },
     rule = { kind = "choice", choices = { "drop", "clamp" }, default = "drop", help = "what becomes of them" },
-    voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "thins both clouds to a point a voxel; 0: not" },
-    icp = { kind = "number", unit = "m", default = 0, min = 0, help = "aligns first, pairs up to this distance; 0: not" },
+    voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "thins both clouds to a point each; 0: not" },
+    icp = { kind = "number", unit = "m", default = 0, min = 0, help = "aligns first, by pairs so near; 0: not" },
     normals = { kind = "flag", help = "normal consistency, over 30 neighbours where there are no normals" },
     samples = { kind = "integer", default = 1000000, min = 1, help = "points sampled on a mesh" },
     seed = { kind = "integer", default = 1, min = 0, help = "of the sampling" },

@@ -5,15 +5,15 @@
 /// @file
 /// The whole library.
 
-#include <aib/core.hpp>
-#include <aib/math.hpp>
-#include <aib/stats.hpp>
-#include <aib/raster.hpp>
-#include <aib/search.hpp>
-#include <aib/depth.hpp>
-#include <aib/pose.hpp>
-#include <aib/cloud.hpp>
-#include <aib/mesh.hpp>
 #include <aib/align.hpp>
-#include <aib/sample.hpp>
+#include <aib/cloud.hpp>
+#include <aib/core.hpp>
+#include <aib/depth.hpp>
 #include <aib/io.hpp>
+#include <aib/math.hpp>
+#include <aib/mesh.hpp>
+#include <aib/pose.hpp>
+#include <aib/raster.hpp>
+#include <aib/sample.hpp>
+#include <aib/search.hpp>
+#include <aib/stats.hpp>

@@ -60,59 +60,6 @@
 #include <utility>
 #include <vector>
 
-// aib/core/concepts.hpp
-
-namespace aib {
-
-/// Teaches aib a point type. A specialisation has
-///   using scalar = float or double;
-///   static scalar coordinate(const Point& point, int axis);   // axis 0, 1, 2
-template <class Point>
-struct point_traits;
-
-template <std::floating_point Scalar, int Options>
-struct point_traits<Eigen::Matrix<Scalar, 3, 1, Options>> {
-  using scalar = Scalar;
-  static scalar coordinate(const Eigen::Matrix<Scalar, 3, 1, Options>& point, int axis) {
-    return point[axis];
-  }
-};
-
-template <std::floating_point Scalar>
-struct point_traits<std::array<Scalar, 3>> {
-  using scalar = Scalar;
-  static scalar coordinate(const std::array<Scalar, 3>& point, int axis) {
-    return point[static_cast<std::size_t>(axis)];
-  }
-};
-
-/// A type that `point_traits` knows.
-template <class Point>
-concept point = requires(const Point& p) {
-  typename point_traits<Point>::scalar;
-  { point_traits<Point>::coordinate(p, 0) } -> std::same_as<typename point_traits<Point>::scalar>;
-};
-
-/// Any sized random-access range of points: a vector, a span, a range of your own.
-template <class Range>
-concept point_range = std::ranges::random_access_range<const Range> &&
-    std::ranges::sized_range<const Range> && point<std::ranges::range_value_t<const Range>>;
-
-/// Scalar of the points of a range.
-template <point_range Range>
-using scalar_of = typename point_traits<std::ranges::range_value_t<const Range>>::scalar;
-
-/// The point as an Eigen vector of another scalar.
-template <class Scalar, point Point>
-Eigen::Matrix<Scalar, 3, 1> as_vector(const Point& p) {
-  using traits = point_traits<Point>;
-  return {static_cast<Scalar>(traits::coordinate(p, 0)),
-          static_cast<Scalar>(traits::coordinate(p, 1)),
-          static_cast<Scalar>(traits::coordinate(p, 2))};
-}
-
-}  // namespace aib
-
 // aib/core/message.hpp
 
 namespace aib {
@@ -206,6 +153,1348 @@ class stopped_error : public error {
 };
 
 }  // namespace aib
+
+// aib/stats/quantiles.hpp
+
+namespace aib::stats {
+
+/// What a quantile between two values is.
+enum class quantile_rule {
+  linear,    ///< interpolated, numpy's default
+  lower,     ///< the smaller value (torch.median)
+  midpoint,  ///< their mean
+};
+
+/// Quantile of unsorted values, q in [0, 1]. Reorders `values`; takes linear time.
+/// Throws undefined_error if there is no value, argument_error if q is outside [0, 1].
+template <class Scalar>
+double quantile_in_place(std::span<Scalar> values,
+                         double q,
+                         quantile_rule rule = quantile_rule::linear) {
+  if (values.empty()) throw undefined_error("stats::quantile: no values");
+  if (!(q >= 0 && q <= 1))
+    throw argument_error(message("stats::quantile: q in [0, 1] expected, found ", q));
+  const double place = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
+  std::nth_element(values.begin(), nth, values.end());
+  const double low = static_cast<double>(*nth);
+  const double share = place - static_cast<double>(below);
+  if (share == 0 || rule == quantile_rule::lower) return low;
+  const double high = static_cast<double>(*std::min_element(nth + 1, values.end()));
+  return rule == quantile_rule::midpoint ? (low + high) / 2 : low + (high - low) * share;
+}
+
+/// As quantile_in_place, on a copy.
+template <class Scalar>
+double quantile(std::span<const Scalar> values,
+                double q,
+                quantile_rule rule = quantile_rule::linear) {
+  std::vector<Scalar> copy(values.begin(), values.end());
+  return quantile_in_place<Scalar>(copy, q, rule);
+}
+
+/// The middle value, or the mean of the two middle values.
+template <class Scalar>
+double median(std::span<const Scalar> values) {
+  return quantile(values, 0.5);
+}
+
+}  // namespace aib::stats
+
+// aib/align/outliers.hpp
+
+namespace aib::align {
+
+struct outlier_options {
+  std::optional<double> factor = {};    ///< of the median distance, e.g. 3
+  std::optional<double> distance = {};  ///< absolute, unit of the positions
+};
+
+/// Distances of positions from their component-wise median, and those that are kept.
+struct outlier_split {
+  Eigen::Vector3d median_position;
+  double median_distance;
+  std::vector<std::size_t> kept;     ///< distance <= every limit that is set
+  std::vector<std::size_t> removed;  ///< ascending, as kept
+};
+
+/// One pass. Throws undefined_error if there is no position.
+inline outlier_split split_outliers(std::span<const Eigen::Vector3d> positions,
+                                    const outlier_options& options) {
+  outlier_split out;
+  std::vector<double> values(positions.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < positions.size(); ++i) values[i] = positions[i][axis];
+    out.median_position[axis] = stats::quantile_in_place<double>(values, 0.5);
+  }
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& p : positions) distances.push_back((p - out.median_position).norm());
+  out.median_distance = stats::median<double>(distances);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double limit = std::min(options.factor ? *options.factor * out.median_distance : infinity,
+                                options.distance.value_or(infinity));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    (distances[i] <= limit ? out.kept : out.removed).push_back(i);
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/align/spread.hpp
+
+namespace aib::align {
+
+namespace detail {
+
+/// Turns columns a and b of the rows until they are orthogonal; whether they were not.
+inline bool orthogonalize(std::vector<Eigen::Vector3d>& rows, Eigen::Matrix3d& axes, int a, int b) {
+  double aa = 0, bb = 0, ab = 0;
+  for (const Eigen::Vector3d& row : rows) {
+    aa += row[a] * row[a];
+    bb += row[b] * row[b];
+    ab += row[a] * row[b];
+  }
+  if (!(std::abs(ab) > 1e-15 * std::sqrt(aa) * std::sqrt(bb))) return false;
+  const double slope = (bb - aa) / (2 * ab);
+  const double tangent = std::copysign(1 / (std::abs(slope) + std::hypot(1, slope)), slope);
+  const double cosine = 1 / std::hypot(1, tangent), sine = cosine * tangent;
+  const auto turn = [&](auto&& row) {
+    const double from_a = row[a], from_b = row[b];
+    row[a] = cosine * from_a - sine * from_b;
+    row[b] = sine * from_a + cosine * from_b;
+  };
+  for (Eigen::Vector3d& row : rows) turn(row);
+  for (int r = 0; r < 3; ++r) turn(axes.row(r));
+  return true;
+}
+
+inline std::string direction_text(const Eigen::Vector3d& v) {
+  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
+  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
+}
+
+}  // namespace detail
+
+/// How points lie about their mean: along which axes, how far.
+struct spread {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d axes;             ///< columns, longest first
+  Eigen::Vector3d singular_values;  ///< of the centred points, descending; square sums of the axes
+  double rounding;                  ///< singular value that rounding of the coordinates can give
+
+  /// Second singular value over the first: 0 for points on a line or in one place.
+  [[nodiscard]] double ratio() const {
+    if (!(singular_values[0] > rounding) || !(singular_values[1] > rounding)) return 0;
+    return singular_values[1] / singular_values[0];
+  }
+  /// First singular value over the second: how much worse the turn about the long axis is known.
+  [[nodiscard]] double condition() const {
+    return ratio() > 0 ? 1 / ratio() : std::numeric_limits<double>::infinity();
+  }
+};
+
+/// Of the centred points themselves, not of their covariance: a square would hide everything below
+/// 1e-8. Throws argument_error if a point is not finite, undefined_error if there is none.
+/// Source: Hestenes, "Inversion of matrices by biorthogonalization", 1958 (one-sided Jacobi).
+inline spread spread_of(std::span<const Eigen::Vector3d> points) {
+  if (points.empty()) throw undefined_error("align: no points");
+  const auto n = static_cast<double>(points.size());
+  spread out{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 0};
+  double largest = 0;
+  for (const Eigen::Vector3d& p : points) {
+    if (!p.allFinite()) throw argument_error("align: a point is not finite");
+    out.mean += p / n;
+    largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  }
+  out.rounding = 4 * std::numeric_limits<double>::epsilon() * largest * std::sqrt(n);
+  std::vector<Eigen::Vector3d> rows;
+  for (const Eigen::Vector3d& p : points) rows.push_back(p - out.mean);
+  bool turned = true;
+  for (int sweep = 0; sweep < 30 && turned; ++sweep) {
+    turned = false;
+    for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
+      turned = detail::orthogonalize(rows, out.axes, a, b) || turned;
+  }
+  for (const Eigen::Vector3d& row : rows) out.singular_values += row.cwiseAbs2();
+  out.singular_values = out.singular_values.cwiseSqrt();
+  for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+    if (out.singular_values[a] >= out.singular_values[b]) continue;
+    std::swap(out.singular_values[a], out.singular_values[b]);
+    out.axes.col(a).swap(out.axes.col(b));
+  }
+  for (int axis = 0; axis < 3; ++axis) {  // the largest component points forward
+    Eigen::Index at = 0;
+    out.axes.col(axis).cwiseAbs().maxCoeff(&at);
+    if (out.axes(at, axis) < 0) out.axes.col(axis) *= -1;
+  }
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/core/concepts.hpp
+
+namespace aib {
+
+/// Teaches aib a point type. A specialisation has
+///   using scalar = float or double;
+///   static scalar coordinate(const Point& point, int axis);   // axis 0, 1, 2
+template <class Point>
+struct point_traits;
+
+template <std::floating_point Scalar, int Options>
+struct point_traits<Eigen::Matrix<Scalar, 3, 1, Options>> {
+  using scalar = Scalar;
+  static scalar coordinate(const Eigen::Matrix<Scalar, 3, 1, Options>& point, int axis) {
+    return point[axis];
+  }
+};
+
+template <std::floating_point Scalar>
+struct point_traits<std::array<Scalar, 3>> {
+  using scalar = Scalar;
+  static scalar coordinate(const std::array<Scalar, 3>& point, int axis) {
+    return point[static_cast<std::size_t>(axis)];
+  }
+};
+
+/// A type that `point_traits` knows.
+template <class Point>
+concept point = requires(const Point& p) {
+  typename point_traits<Point>::scalar;
+  { point_traits<Point>::coordinate(p, 0) } -> std::same_as<typename point_traits<Point>::scalar>;
+};
+
+/// Any sized random-access range of points: a vector, a span, a range of your own.
+template <class Range>
+concept point_range = std::ranges::random_access_range<const Range> &&
+    std::ranges::sized_range<const Range> && point<std::ranges::range_value_t<const Range>>;
+
+/// Scalar of the points of a range.
+template <point_range Range>
+using scalar_of = typename point_traits<std::ranges::range_value_t<const Range>>::scalar;
+
+/// The point as an Eigen vector of another scalar.
+template <class Scalar, point Point>
+Eigen::Matrix<Scalar, 3, 1> as_vector(const Point& p) {
+  using traits = point_traits<Point>;
+  return {static_cast<Scalar>(traits::coordinate(p, 0)),
+          static_cast<Scalar>(traits::coordinate(p, 1)),
+          static_cast<Scalar>(traits::coordinate(p, 2))};
+}
+
+}  // namespace aib
+
+// aib/math/rotation.hpp
+
+namespace aib::math {
+
+inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
+
+/// Angle in degrees of an angle in radians.
+[[nodiscard]] constexpr double degrees(double radians) { return radians * degrees_per_radian; }
+
+/// Angle in radians of an angle in degrees.
+[[nodiscard]] constexpr double radians(double degrees) { return degrees / degrees_per_radian; }
+
+/// Unit quaternion, Hamilton convention, scalar first. Has no alignment demands, unlike Eigen's.
+struct quaternion {
+  double w = 1;
+  double x = 0;
+  double y = 0;
+  double z = 0;
+};
+
+/// Rotation matrix of a quaternion of any length > 0.
+/// Throws argument_error if the quaternion is zero or not finite.
+Eigen::Matrix3d rotation_from(const quaternion& q);
+
+/// Unit quaternion of a rotation matrix, w >= 0.
+quaternion quaternion_from(const Eigen::Matrix3d& rotation);
+
+/// Rotation by the length of `axis_angle` (radians) about its direction.
+Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle);
+
+/// Axis times angle in radians, angle in [0, pi].
+Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation);
+
+/// Geodesic angle of a rotation in radians, [0, pi]; accurate near 0 and near pi.
+double rotation_angle(const Eigen::Matrix3d& rotation);
+
+/// A rotation and how far the matrix that it was made from lay from it.
+struct projected_rotation {
+  Eigen::Matrix3d rotation;
+  double residual;  ///< Frobenius norm of (matrix - rotation)
+};
+
+/// The rotation nearest to `matrix` in the Frobenius norm; nothing where the matrix is not finite
+/// or where its determinant is not positive.
+std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix);
+
+inline Eigen::Matrix3d rotation_from(const quaternion& q) {
+  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (!(norm > 0) || !std::isfinite(norm)) {
+    throw argument_error(message("math::rotation_from: quaternion (", q.w, ", ", q.x, ", ", q.y,
+                                 ", ", q.z, ") has no direction"));
+  }
+  return Eigen::Quaterniond(q.w / norm, q.x / norm, q.y / norm, q.z / norm).toRotationMatrix();
+}
+
+inline quaternion quaternion_from(const Eigen::Matrix3d& rotation) {
+  Eigen::Quaterniond q(rotation);
+  q.normalize();
+  const double sign = q.w() < 0 ? -1 : 1;
+  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
+}
+
+inline Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle) {
+  const double angle = axis_angle.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, axis_angle / angle).toRotationMatrix();
+}
+
+inline Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation) {
+  const quaternion q = quaternion_from(rotation);
+  const Eigen::Vector3d v(q.x, q.y, q.z);
+  const double length = v.norm();
+  if (length == 0) return Eigen::Vector3d::Zero();
+  return v * (2 * std::atan2(length, q.w) / length);
+}
+
+inline double rotation_angle(const Eigen::Matrix3d& rotation) {
+  const quaternion q = quaternion_from(rotation);
+  return 2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), q.w);
+}
+
+inline std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix) {
+  if (!matrix.allFinite() || !(matrix.determinant() > 0)) return std::nullopt;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  return projected_rotation{rotation, (matrix - rotation).norm()};
+}
+
+}  // namespace aib::math
+
+// aib/math/rigid3.hpp
+
+namespace aib::math {
+
+/// Rigid motion of space: `b_from_a * p_in_a = p_in_b`.
+struct rigid3 {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] rigid3 inverse() const {
+    return {rotation.transpose(), -(rotation.transpose() * translation)};
+  }
+  [[nodiscard]] bool is_finite() const { return rotation.allFinite() && translation.allFinite(); }
+  [[nodiscard]] Eigen::Matrix4d matrix() const {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    m.topLeftCorner<3, 3>() = rotation;
+    m.topRightCorner<3, 1>() = translation;
+    return m;
+  }
+
+  /// c_from_a = c_from_b * b_from_a
+  friend rigid3 operator*(const rigid3& c_from_b, const rigid3& b_from_a) {
+    return {c_from_b.rotation * b_from_a.rotation,
+            c_from_b.rotation * b_from_a.translation + c_from_b.translation};
+  }
+  friend Eigen::Vector3d operator*(const rigid3& b_from_a, const Eigen::Vector3d& p_in_a) {
+    return b_from_a.rotation * p_in_a + b_from_a.translation;
+  }
+};
+
+}  // namespace aib::math
+
+// aib/math/sim3.hpp
+
+namespace aib::math {
+
+/// Similarity of space: `p_in_b = scale * rotation * p_in_a + translation`.
+struct sim3 {
+  double scale = 1;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] sim3 inverse() const {
+    const Eigen::Matrix3d r = rotation.transpose();
+    return {1 / scale, r, -(r * translation) / scale};
+  }
+  [[nodiscard]] Eigen::Matrix4d matrix() const {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    m.topLeftCorner<3, 3>() = scale * rotation;
+    m.topRightCorner<3, 1>() = translation;
+    return m;
+  }
+
+  friend sim3 operator*(const sim3& c_from_b, const sim3& b_from_a) {
+    return {c_from_b.scale * b_from_a.scale, c_from_b.rotation * b_from_a.rotation,
+            c_from_b * b_from_a.translation};
+  }
+  friend Eigen::Vector3d operator*(const sim3& b_from_a, const Eigen::Vector3d& p_in_a) {
+    return b_from_a.scale * (b_from_a.rotation * p_in_a) + b_from_a.translation;
+  }
+  /// Moves a pose: its position as a point, its axes by the rotation alone.
+  friend rigid3 operator*(const sim3& b_from_a, const rigid3& a_from_camera) {
+    return {b_from_a.rotation * a_from_camera.rotation, b_from_a * a_from_camera.translation};
+  }
+};
+
+}  // namespace aib::math
+
+// aib/align/umeyama.hpp
+
+namespace aib::align {
+
+/// When points are too close to a line to tell a rotation.
+enum class rank_rule {
+  relative,  ///< second singular value of either side's positions below 1e-10 of the first
+  evo,       ///< fewer than two singular values of the covariance above 2.2e-16, whatever the unit
+};
+
+/// A second singular value of this share of the first is refused.
+inline constexpr double refused_ratio = 1e-10;
+
+/// A second singular value of this share of the first is worth a warning.
+inline constexpr double doubted_ratio = 1e-2;
+
+struct umeyama_options {
+  bool scale = true;  ///< false: rigid, scale 1
+  rank_rule convention = rank_rule::relative;
+};
+
+namespace detail {
+
+/// The proper rotation R that maximises tr(R^T matrix).
+/// Source: Umeyama, "Least-squares estimation of transformation parameters between two point
+/// patterns", PAMI 1991, Eq. (40)-(43); Markley 1988.
+struct best_rotation {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d signed_singular_values;
+
+  explicit best_rotation(const Eigen::Matrix3d& matrix) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1, 1);
+    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
+    rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    signed_singular_values = svd.singularValues().cwiseProduct(sign);
+  }
+};
+
+/// Two sets of points about their means: covariance 1/n sum (y - my)(x - mx)^T, variance of x.
+struct paired_moments {
+  Eigen::Vector3d estimate_mean = Eigen::Vector3d::Zero(), reference_mean = estimate_mean;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double estimate_variance = 0;
+
+  paired_moments(std::span<const Eigen::Vector3d> estimate,
+                 std::span<const Eigen::Vector3d> reference) {
+    const auto n = static_cast<double>(estimate.size());
+    for (const Eigen::Vector3d& x : estimate) estimate_mean += x / n;
+    for (const Eigen::Vector3d& y : reference) reference_mean += y / n;
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      const Eigen::Vector3d x = estimate[i] - estimate_mean, y = reference[i] - reference_mean;
+      covariance += y * x.transpose() / n;
+      estimate_variance += x.squaredNorm() / n;
+    }
+  }
+
+  /// The transform with this rotation and scale that moves mean to mean.
+  [[nodiscard]] math::sim3 centred(double scale, const Eigen::Matrix3d& rotation) const {
+    return {scale, rotation, reference_mean - scale * (rotation * estimate_mean)};
+  }
+};
+
+inline void check_pairs(std::string_view who, std::size_t n_estimate, std::size_t n_reference) {
+  if (n_estimate != n_reference) {
+    throw argument_error(message(who, ": as many estimated as reference points expected, found ",
+                                 n_estimate, " and ", n_reference));
+  }
+  if (n_estimate == 0) throw undefined_error(message(who, ": no points"));
+}
+
+inline void refuse_a_line(std::string_view who, std::string_view side, const spread& s) {
+  if (s.ratio() >= refused_ratio) return;
+  const Eigen::Vector3d axis = s.axes.col(0);
+  if (!(s.singular_values[0] > s.rounding))
+    throw undefined_error(message(who, ": the positions of the ", side, " are all in one place"));
+  throw undefined_error(message(who, ": the positions of the ", side,
+                                " lie on a line: the turn about ", direction_text(axis),
+                                " is free"));
+}
+
+inline void refuse_as_evo(const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d d = Eigen::JacobiSVD<Eigen::Matrix3d>(covariance).singularValues();
+  if (d[1] > std::numeric_limits<double>::epsilon()) return;
+  throw undefined_error(message("umeyama: degenerate covariance rank, singular values ", d[0], ", ",
+                                d[1], ", ", d[2]));
+}
+
+}  // namespace detail
+
+/// The similarity ref_from_est that minimises sum |ref - (s R est + t)|^2 over paired points.
+///
+/// estimate, reference   n x 3 each, any units
+///
+/// The rotation is proper also for mirrored points. Throws argument_error if the lengths differ or
+/// a point is not finite, undefined_error if the positions of a side lie on a line (see rank_rule).
+/// Source: Umeyama, PAMI 1991, Eq. (40)-(43).
+inline math::sim3 umeyama(std::span<const Eigen::Vector3d> estimate,
+                          std::span<const Eigen::Vector3d> reference,
+                          const umeyama_options& options = {}) {
+  detail::check_pairs("umeyama", estimate.size(), reference.size());
+  const spread estimate_spread = spread_of(estimate), reference_spread = spread_of(reference);
+  const detail::paired_moments m(estimate, reference);
+  if (options.convention == rank_rule::evo) {
+    detail::refuse_as_evo(m.covariance);
+  } else {
+    detail::refuse_a_line("umeyama", "estimate", estimate_spread);
+    detail::refuse_a_line("umeyama", "reference", reference_spread);
+  }
+  const detail::best_rotation best(m.covariance);
+  const double scale =
+      options.scale ? best.signed_singular_values.sum() / m.estimate_variance : 1.0;
+  return m.centred(scale, best.rotation);
+}
+
+/// As above, from any ranges of points.
+template <point_range Estimate, point_range Reference>
+math::sim3 umeyama(const Estimate& estimate,
+                   const Reference& reference,
+                   const umeyama_options& options = {}) {
+  const auto vectors = [](const auto& range) {
+    std::vector<Eigen::Vector3d> out;
+    out.reserve(std::ranges::size(range));
+    for (const auto& p : range) out.push_back(as_vector<double>(p));
+    return out;
+  };
+  const std::vector<Eigen::Vector3d> e = vectors(estimate), r = vectors(reference);
+  return umeyama(std::span<const Eigen::Vector3d>(e), std::span<const Eigen::Vector3d>(r), options);
+}
+
+}  // namespace aib::align
+
+// aib/align/pose_fit.hpp
+
+namespace aib::align {
+
+/// What an alignment may change.
+enum class align_mode {
+  sim3,   ///< rotation, translation, scale
+  se3,    ///< rotation, translation
+  yaw,    ///< the turn about the vertical, translation: both worlds know where down is
+  scale,  ///< scale alone, as evo's --correct_scale without --align
+  first,  ///< the rigid motion that lays the first pose of the one on that of the other
+};
+
+struct fit_options {
+  align_mode mode = align_mode::sim3;
+  double rotation_weight = 0;  ///< sim3, se3: > 0: orientations count, a radian as this length
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw: the vertical of both worlds
+  rank_rule convention = rank_rule::relative;
+};
+
+/// Paired world_from_camera poses, and fits of ref_from_est to some of them.
+class pose_fit {
+ public:
+  /// estimate, reference   as long, finite
+  pose_fit(std::span<const math::rigid3> estimate,
+           std::span<const math::rigid3> reference,
+           const fit_options& options)
+      : estimate_(estimate), reference_(reference), options_(options) {}
+
+  /// Throws undefined_error if the chosen poses do not tell the transform.
+  [[nodiscard]] math::sim3 operator()(std::span<const std::size_t> chosen) const;
+
+  /// Distance that a transform leaves between the positions of a pose.
+  [[nodiscard]] double residual(const math::sim3& ref_from_est, std::size_t i) const {
+    return (ref_from_est * estimate_[i].translation - reference_[i].translation).norm();
+  }
+
+  [[nodiscard]] std::vector<Eigen::Vector3d> estimate(std::span<const std::size_t> chosen) const {
+    return positions(estimate_, chosen);
+  }
+  [[nodiscard]] std::vector<Eigen::Vector3d> reference(std::span<const std::size_t> chosen) const {
+    return positions(reference_, chosen);
+  }
+
+ private:
+  static std::vector<Eigen::Vector3d> positions(std::span<const math::rigid3> poses,
+                                                std::span<const std::size_t> chosen) {
+    std::vector<Eigen::Vector3d> out;
+    for (const std::size_t i : chosen) out.push_back(poses[i].translation);
+    return out;
+  }
+  [[nodiscard]] math::sim3 with_rotations(std::span<const std::size_t> chosen) const;
+  [[nodiscard]] math::sim3 about_vertical(std::span<const std::size_t> chosen) const;
+
+  std::span<const math::rigid3> estimate_, reference_;
+  fit_options options_;
+};
+
+inline math::sim3 pose_fit::operator()(std::span<const std::size_t> chosen) const {
+  if (chosen.empty()) throw undefined_error("align: no pose");
+  if (options_.mode == align_mode::first) {
+    const math::rigid3 moved = reference_[chosen.front()] * estimate_[chosen.front()].inverse();
+    return {1, moved.rotation, moved.translation};
+  }
+  if (options_.mode == align_mode::yaw) return about_vertical(chosen);
+  const bool turns = options_.mode != align_mode::scale;
+  if (turns && options_.rotation_weight > 0) return with_rotations(chosen);
+  const math::sim3 fitted =
+      umeyama(estimate(chosen), reference(chosen),
+              {.scale = options_.mode != align_mode::se3, .convention = options_.convention});
+  return turns ? fitted : math::sim3{.scale = fitted.scale};
+}
+
+/// Minimises sum |y - (s R x + t)|^2 + w^2 |angle(R Rx, Ry)|^2 (chordal), rotation and scale in
+/// turns. Orientations tell what positions on a line leave free.
+inline math::sim3 pose_fit::with_rotations(std::span<const std::size_t> chosen) const {
+  const std::vector<Eigen::Vector3d> x = estimate(chosen), y = reference(chosen);
+  const detail::paired_moments m(x, y);
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : chosen)
+    turned += reference_[i].rotation * estimate_[i].rotation.transpose();
+  const double w = options_.rotation_weight;
+  turned *= w * w / (2 * static_cast<double>(chosen.size()));
+  if (options_.mode == align_mode::se3)
+    return m.centred(1, detail::best_rotation(m.covariance + turned).rotation);
+  if (const spread s = spread_of(x); !(s.singular_values[0] > s.rounding))
+    throw undefined_error("align: the positions of the estimate are all in one place: no scale");
+  double scale = 1;
+  Eigen::Matrix3d rotation = detail::best_rotation(turned).rotation;
+  for (int round = 0; round < 100; ++round) {
+    const double before = scale;
+    scale = (rotation.transpose() * m.covariance).trace() / m.estimate_variance;
+    rotation = detail::best_rotation(scale * m.covariance + turned).rotation;
+    if (std::abs(scale - before) <= 1e-15 * std::abs(scale)) break;
+  }
+  if (!(scale > 0)) {
+    throw undefined_error(
+        message("align: positions and orientations contradict each other, scale ", scale));
+  }
+  return m.centred(scale, rotation);
+}
+
+/// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation", IROS 2018,
+/// Sec. III-C.
+inline math::sim3 pose_fit::about_vertical(std::span<const std::size_t> chosen) const {
+  const Eigen::Vector3d up = options_.up.normalized();
+  if (!up.allFinite()) throw argument_error("align: up has no direction");
+  const detail::paired_moments m(estimate(chosen), reference(chosen));
+  const Eigen::Matrix3d& c = m.covariance;
+  // sum y . R x = cos a tr((I - up up^T) C) + sin a (up . sum x cross y) + constant
+  const Eigen::Vector3d cross(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
+  const double cosine = c.trace() - up.dot(c * up), sine = up.dot(cross);
+  if (!(std::hypot(cosine, sine) > refused_ratio * c.norm()))
+    throw undefined_error("align: the positions leave the turn about the vertical free");
+  const Eigen::Vector3d turn = std::atan2(sine, cosine) * up;
+  return m.centred(1, math::rotation_from(turn));
+}
+
+}  // namespace aib::align
+
+// aib/core/random.hpp
+
+namespace aib {
+
+/// A well-mixed 64-bit number for a counter: the same for any order of calls.
+/// Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
+/// (SplitMix64).
+[[nodiscard]] constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t counter) {
+  std::uint64_t z = seed + (counter + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// Seeded random numbers, the same on every machine. The distributions are our own because those of
+/// the standard library differ between implementations.
+///
+/// Satisfies std::uniform_random_bit_generator. Source of the generator: xoshiro256++, Blackman and
+/// Vigna, 2021.
+class random_engine {
+ public:
+  using result_type = std::uint64_t;
+
+  explicit constexpr random_engine(std::uint64_t seed = 1) {
+    for (std::uint64_t i = 0; i < 4; ++i) state_[i] = random_bits(seed, i);
+  }
+
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return ~result_type{0}; }
+
+  constexpr result_type operator()() {
+    const auto rotate = [](std::uint64_t x, int k) { return (x << k) | (x >> (64 - k)); };
+    const std::uint64_t result = rotate(state_[0] + state_[3], 23) + state_[0];
+    const std::uint64_t t = state_[1] << 17;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = rotate(state_[3], 45);
+    return result;
+  }
+
+  /// Uniform in [0, 1), 53 random bits.
+  constexpr double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
+
+  /// Uniform in [low, high).
+  constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+  /// Uniform integer in [0, n), n > 0.
+  constexpr std::uint64_t below(std::uint64_t n) {
+    const std::uint64_t uneven = (0 - n) % n;  // 2^64 mod n values would come up once too often
+    std::uint64_t bits = (*this)();
+    while (bits < uneven) bits = (*this)();
+    return bits % n;
+  }
+
+  /// Standard normal (Box and Muller, one of the two values used).
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::uint64_t state_[4] = {};
+};
+
+}  // namespace aib
+
+// aib/align/ransac.hpp
+
+namespace aib::align {
+
+struct ransac_options {
+  double distance = 0;  ///< inliers lie within it, unit of the reference; 0: told from the data
+  std::size_t iterations = 1000;
+  std::uint64_t seed = 1;
+};
+
+/// The poses among `chosen` that agree with one transform, ascending.
+///
+/// With `distance` the transform of three poses that most poses agree with (RANSAC); without, the
+/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations.
+/// Then fit and inliers in turns until they no longer change.
+/// Throws undefined_error if no three poses tell a transform.
+/// Source: Fischler and Bolles, CACM 1981; Rousseeuw, "Least median of squares regression", 1984.
+inline std::vector<std::size_t> consensus(const pose_fit& fit,
+                                          std::span<const std::size_t> chosen,
+                                          const ransac_options& options = {}) {
+  const auto residuals = [&](const math::sim3& ref_from_est) {
+    std::vector<double> out;
+    for (const std::size_t i : chosen) out.push_back(fit.residual(ref_from_est, i));
+    return out;
+  };
+  const auto cost = [&](std::vector<double> r) {
+    if (options.distance > 0) {
+      return -static_cast<double>(
+          std::count_if(r.begin(), r.end(), [&](double d) { return d <= options.distance; }));
+    }
+    return stats::quantile_in_place<double>(r, 0.5, stats::quantile_rule::lower);
+  };
+  random_engine random(options.seed);
+  math::sim3 best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < options.iterations && chosen.size() >= 3; ++k) {
+    std::array<std::size_t, 3> sample;
+    for (std::size_t& s : sample) s = chosen[random.below(chosen.size())];
+    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
+    try {
+      const math::sim3 candidate = fit(sample);
+      const double c = cost(residuals(candidate));
+      if (c < least) {
+        least = c;
+        best = candidate;
+      }
+    } catch (const undefined_error&) {  // three poses on a line
+    }
+  }
+  if (!std::isfinite(least))
+    throw undefined_error("align: robust: no three poses tell a transform");
+  const double n = static_cast<double>(chosen.size());
+  const double sigma = 1.4826 * (1 + 5 / std::max(1.0, n - 3)) * least;  // Rousseeuw, Eq. (1.3)
+  const double limit = options.distance > 0 ? options.distance : 2.5 * sigma;
+  std::vector<std::size_t> inliers;
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::size_t> next;
+    for (const std::size_t i : chosen) {
+      if (fit.residual(best, i) <= limit) next.push_back(i);
+    }
+    if (next == inliers || next.size() < 3) break;
+    inliers = std::move(next);
+    best = fit(inliers);
+  }
+  return inliers;
+}
+
+}  // namespace aib::align
+
+// aib/pose/trajectory.hpp
+
+namespace aib::pose {
+
+/// Camera poses in the order of their source.
+///
+/// `names` and `stamps_s` are empty or as long as the poses. Axes of a camera: x right, y down, z
+/// forward (OpenCV). A pose that is not finite is not registered.
+struct trajectory {
+  std::vector<math::rigid3> world_from_camera = {};
+  std::vector<std::string> names = {};
+  std::vector<double> stamps_s = {};
+  std::vector<std::string> warnings = {};  ///< what the reader repaired or doubts, a sentence each
+
+  [[nodiscard]] std::size_t size() const { return world_from_camera.size(); }
+  [[nodiscard]] bool empty() const { return world_from_camera.empty(); }
+};
+
+/// Throws argument_error unless names and stamps are absent or one a pose.
+inline void check(const trajectory& t) {
+  const auto fits = [&](std::size_t n) { return n == 0 || n == t.size(); };
+  if (fits(t.names.size()) && fits(t.stamps_s.size())) return;
+  throw argument_error(message("trajectory: ", t.size(), " poses, ", t.names.size(), " names, ",
+                               t.stamps_s.size(), " stamps: one of each a pose expected"));
+}
+
+/// The trajectory seen from another frame.
+inline trajectory operator*(const math::sim3& b_from_a, trajectory t) {
+  for (math::rigid3& pose : t.world_from_camera) pose = b_from_a * pose;
+  return t;
+}
+
+/// Camera centres.
+inline std::vector<Eigen::Vector3d> positions(const trajectory& t) {
+  std::vector<Eigen::Vector3d> p;
+  p.reserve(t.size());
+  for (const math::rigid3& pose : t.world_from_camera) p.push_back(pose.translation);
+  return p;
+}
+
+/// The poses at `indices`, with their names and stamps.
+inline trajectory select(const trajectory& t, const std::vector<std::size_t>& indices) {
+  trajectory out;
+  for (const std::size_t i : indices) {
+    out.world_from_camera.push_back(t.world_from_camera.at(i));
+    if (!t.names.empty()) out.names.push_back(t.names.at(i));
+    if (!t.stamps_s.empty()) out.stamps_s.push_back(t.stamps_s.at(i));
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/registered.hpp
+
+namespace aib::pose {
+
+/// Throws argument_error unless two trajectories have as many poses and, where both have names, the
+/// same names in the same order.
+inline void check_associated(std::string_view who,
+                             const trajectory& estimate,
+                             const trajectory& reference) {
+  check(estimate);
+  check(reference);
+  if (estimate.size() != reference.size()) {
+    throw argument_error(message(who, ": ", estimate.size(), " estimated and ", reference.size(),
+                                 " reference poses; associate them first"));
+  }
+  if (estimate.names.empty() || reference.names.empty()) return;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    if (estimate.names[i] == reference.names[i]) continue;
+    throw argument_error(message(who, ": pose ", i, " is \"", estimate.names[i],
+                                 "\" in the estimate and \"", reference.names[i],
+                                 "\" in the reference; associate them first"));
+  }
+}
+
+/// The frames that have a finite pose in both of two associated trajectories.
+struct registered_frames {
+  std::vector<math::rigid3> estimate;   ///< world_from_camera
+  std::vector<math::rigid3> reference;  ///< world_from_camera
+  std::vector<std::size_t> index;       ///< of each in the trajectories, ascending
+};
+
+/// Throws argument_error as check_associated does.
+[[nodiscard]] inline registered_frames registered(std::string_view who,
+                                                  const trajectory& estimate,
+                                                  const trajectory& reference) {
+  check_associated(who, estimate, reference);
+  registered_frames out;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    const math::rigid3& e = estimate.world_from_camera[i];
+    const math::rigid3& r = reference.world_from_camera[i];
+    if (!e.is_finite() || !r.is_finite()) continue;
+    out.estimate.push_back(e);
+    out.reference.push_back(r);
+    out.index.push_back(i);
+  }
+  return out;
+}
+
+/// The name of a frame of two associated trajectories: one of theirs, else its number.
+[[nodiscard]] inline std::string frame_name(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            std::size_t i) {
+  if (!reference.names.empty()) return reference.names[i];
+  if (!estimate.names.empty()) return estimate.names[i];
+  return message(i);
+}
+
+}  // namespace aib::pose
+
+// aib/align/trajectory.hpp
+
+namespace aib::align {
+
+struct trajectory_options {
+  fit_options fit = {};
+  std::size_t n = 0;              ///< fit to the first n registered frames; 0: to all
+  outlier_options outliers = {};  ///< nothing is removed unless asked
+  std::optional<ransac_options> robust = {};
+  double stand_off = 10;  ///< distance at which the error of a turn is foretold, reference's unit
+};
+
+/// How one trajectory lies in the world of another.
+struct alignment {
+  math::sim3 transform;               ///< ref_from_est
+  std::size_t n_inliers;              ///< frames that the fit used
+  std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
+  double rmse;                        ///< of the inliers' positions, unit of the reference
+  double condition;   ///< first over second singular value of the positions, of the worse side
+  double turn_deg;    ///< expected error of the turn about the long axis of the positions, <= 90
+  double turn_error;  ///< what that moves a point `stand_off` away from the axis
+  std::vector<std::string> warnings;
+};
+
+/// Fits ref_from_est to the positions (and, if asked, orientations) of associated trajectories.
+/// Frames without a finite pose are passed over.
+///
+/// Throws argument_error if the trajectories are not associated, undefined_error if the frames do
+/// not tell the transform: the message names what is free.
+alignment trajectory(const pose::trajectory& estimate,
+                     const pose::trajectory& reference,
+                     const trajectory_options& options = {});
+
+namespace detail {
+
+/// Distances from the long axis of the positions, root of their square sum.
+inline double lever(const spread& s) {
+  return std::hypot(s.singular_values[1], s.singular_values[2]);
+}
+
+/// Standard deviation of the turn about the long axis, radians, at most a right angle: the residual
+/// of a coordinate over the lever.
+inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t parameters) {
+  constexpr double right_angle = std::numbers::pi / 2;
+  const double freedom = 3 * static_cast<double>(n) - static_cast<double>(parameters);
+  if (!(freedom > 0) || !(lever > 0)) return right_angle;
+  return std::min(right_angle, std::sqrt(sse / freedom) / lever);
+}
+
+/// The scale that the median distances from the median positions tell.
+inline double scale_of_medians(std::span<const Eigen::Vector3d> estimate,
+                               std::span<const Eigen::Vector3d> reference) {
+  return split_outliers(reference, {}).median_distance /
+         split_outliers(estimate, {}).median_distance;
+}
+
+}  // namespace detail
+
+inline alignment trajectory(const pose::trajectory& estimate,
+                            const pose::trajectory& reference,
+                            const trajectory_options& options) {
+  const pose::registered_frames frames = pose::registered("align::trajectory", estimate, reference);
+  const pose_fit fit(frames.estimate, frames.reference, options.fit);
+  std::vector<std::size_t> offered(frames.index.size());
+  if (options.n > 0) offered.resize(std::min(options.n, offered.size()));
+  std::iota(offered.begin(), offered.end(), std::size_t{0});
+  if (offered.empty()) {
+    throw undefined_error(message("align::trajectory: none of ", estimate.size(),
+                                  " frames has a finite pose on both sides"));
+  }
+  std::vector<std::size_t> used = options.outliers.factor || options.outliers.distance
+                                      ? split_outliers(fit.estimate(offered), options.outliers).kept
+                                      : offered;
+  if (options.robust) used = consensus(fit, used, *options.robust);
+
+  alignment out{.transform = fit(used),
+                .n_inliers = used.size(),
+                .outliers = {},
+                .rmse = 0,
+                .condition = 1,
+                .turn_deg = 0,
+                .turn_error = 0,
+                .warnings = {}};
+  std::vector<std::size_t> left_out;
+  std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
+                      std::back_inserter(left_out));
+  for (const std::size_t i : left_out) out.outliers.push_back(frames.index[i]);
+  double sse = 0;
+  for (const std::size_t i : used) {
+    const double r = fit.residual(out.transform, i);
+    sse += r * r;
+  }
+  out.rmse = std::sqrt(sse / static_cast<double>(used.size()));
+  if (options.fit.mode == align_mode::first) return out;
+
+  const std::vector<Eigen::Vector3d> x = fit.estimate(used), y = fit.reference(used);
+  const spread s = spread_of(x), s_reference = spread_of(y);
+  out.condition = std::max(s.condition(), s_reference.condition());
+  const bool turns = options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::se3;
+  if (turns && !(options.fit.rotation_weight > 0)) {
+    // Of both sides the thinner: noise widens a line, it never narrows one.
+    const double turn = detail::turn_sigma(
+        std::min(out.transform.scale * detail::lever(s), detail::lever(s_reference)), sse,
+        used.size(), options.fit.mode == align_mode::sim3 ? 7 : 6);
+    out.turn_deg = math::degrees(turn);
+    out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
+    if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
+      const Eigen::Vector3d axis = s_reference.axes.col(0);
+      out.warnings.push_back(message(
+          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
+          "(condition ", std::round(out.condition), "), is known to +-",
+          std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
+          " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
+    }
+  }
+  if (options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::scale) {
+    const double expected = detail::scale_of_medians(x, y);
+    const double off = out.transform.scale / expected;
+    if (std::isfinite(expected) && (off < 0.5 || off > 2)) {
+      out.warnings.push_back(message("the fitted scale ", out.transform.scale, " is far from the ",
+                                     expected, " of the median distances: outliers rule the fit; ",
+                                     "see outlier_factor and robust"));
+    }
+  }
+  return out;
+}
+
+}  // namespace aib::align
+
+// aib/align/batches.hpp
+
+namespace aib::align {
+
+struct batches_options {
+  std::size_t size = 200;               ///< frames of a batch; the last has what is left
+  std::vector<std::size_t> sizes = {};  ///< frames of each batch instead, in order
+  trajectory_options align = {};        ///< of each batch
+};
+
+/// A batch of frames [begin, end) and how it lies in the world of the reference.
+struct batch_alignment {
+  std::size_t begin;
+  std::size_t end;
+  std::optional<alignment> fit;     ///< nothing where the frames do not tell the transform
+  std::string degenerate;           ///< then why
+  std::optional<double> half_rmse;  ///< of every other inlier, fitted to the others
+  std::optional<double> seam;  ///< jump of the position error from the batch before to this one
+};
+
+/// Aligns each of the sequential batches of associated trajectories on its own. A batch whose
+/// frames do not tell its transform is named, not guessed.
+///
+/// Throws argument_error if the trajectories are not associated or the sizes do not add up to their
+/// length.
+std::vector<batch_alignment> batches(const pose::trajectory& estimate,
+                                     const pose::trajectory& reference,
+                                     const batches_options& options = {});
+
+/// Each batch moved by its transform; the poses of degenerate batches become NaN, unregistered.
+pose::trajectory transformed(const std::vector<batch_alignment>& batches,
+                             pose::trajectory estimate);
+
+namespace detail {
+
+inline std::vector<std::size_t> batch_sizes(std::size_t frames, const batches_options& options) {
+  if (!options.sizes.empty()) {
+    const std::size_t sum =
+        std::accumulate(options.sizes.begin(), options.sizes.end(), std::size_t{0});
+    if (sum == frames) return options.sizes;
+    throw argument_error(
+        message("align::batches: sizes that add up to ", frames, " frames expected, found ", sum));
+  }
+  if (options.size == 0) throw argument_error("align::batches: size > 0 expected");
+  std::vector<std::size_t> sizes(frames / options.size, options.size);
+  if (frames % options.size != 0) sizes.push_back(frames % options.size);
+  return sizes;
+}
+
+inline pose::trajectory slice(const pose::trajectory& t, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> indices(end - begin);
+  std::iota(indices.begin(), indices.end(), begin);
+  return select(t, indices);
+}
+
+/// Error of the odd frames of those chosen under a fit to the even ones.
+inline std::optional<double> half_rmse(const pose_fit& fit,
+                                       const std::vector<std::size_t>& chosen) {
+  std::vector<std::size_t> even, odd;
+  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
+  if (odd.empty()) return std::nullopt;
+  try {
+    const math::sim3 ref_from_est = fit(even);
+    double sse = 0;
+    for (const std::size_t i : odd) sse += std::pow(fit.residual(ref_from_est, i), 2);
+    return std::sqrt(sse / static_cast<double>(odd.size()));
+  } catch (const undefined_error&) {
+    return std::nullopt;
+  }
+}
+
+/// Errors of positions under a transform; NaN where a pose is not finite.
+inline Eigen::Vector3d position_error(const math::sim3& ref_from_est,
+                                      const pose::trajectory& estimate,
+                                      const pose::trajectory& reference,
+                                      std::size_t i) {
+  return ref_from_est * estimate.world_from_camera[i].translation -
+         reference.world_from_camera[i].translation;
+}
+
+inline batch_alignment align_batch(const pose::trajectory& estimate,
+                                   const pose::trajectory& reference,
+                                   std::size_t begin,
+                                   std::size_t end,
+                                   const trajectory_options& options) {
+  batch_alignment out{begin, end, {}, {}, {}, {}};
+  const pose::trajectory e = slice(estimate, begin, end), r = slice(reference, begin, end);
+  try {
+    out.fit = trajectory(e, r, options);
+  } catch (const undefined_error& failure) {
+    out.degenerate = failure.what();
+    return out;
+  }
+  const pose::registered_frames frames = pose::registered("align::batches", e, r);
+  const auto& outliers = out.fit->outliers;
+  std::vector<std::size_t> inliers;
+  for (std::size_t k = 0; k < frames.index.size(); ++k) {
+    if (!std::binary_search(outliers.begin(), outliers.end(), frames.index[k]))
+      inliers.push_back(k);
+  }
+  out.half_rmse = half_rmse(pose_fit(frames.estimate, frames.reference, options.fit), inliers);
+  for (std::size_t& i : out.fit->outliers) i += begin;
+  return out;
+}
+
+}  // namespace detail
+
+inline std::vector<batch_alignment> batches(const pose::trajectory& estimate,
+                                            const pose::trajectory& reference,
+                                            const batches_options& options) {
+  pose::check_associated("align::batches", estimate, reference);
+  std::vector<batch_alignment> out;
+  std::size_t begin = 0;
+  for (const std::size_t size : detail::batch_sizes(estimate.size(), options)) {
+    out.push_back(detail::align_batch(estimate, reference, begin, begin + size, options.align));
+    begin += size;
+  }
+  for (std::size_t k = 1; k < out.size(); ++k) {
+    if (!out[k - 1].fit || !out[k].fit) continue;
+    const std::size_t border = out[k].begin;
+    const double jump =
+        (detail::position_error(out[k].fit->transform, estimate, reference, border) -
+         detail::position_error(out[k - 1].fit->transform, estimate, reference, border - 1))
+            .norm();
+    if (std::isfinite(jump)) out[k].seam = jump;
+  }
+  return out;
+}
+
+inline pose::trajectory transformed(const std::vector<batch_alignment>& batches,
+                                    pose::trajectory estimate) {
+  for (const batch_alignment& batch : batches) {
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+      math::rigid3& pose = estimate.world_from_camera.at(i);
+      if (batch.fit)
+        pose = batch.fit->transform * pose;
+      else
+        pose.translation.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return estimate;
+}
+
+}  // namespace aib::align
+
+// aib/cloud/cloud.hpp
+
+namespace aib::cloud {
+
+using color = std::array<std::uint8_t, 3>;
+
+/// Points with what may come with them. A point lies at `origin + points[i]`: float keeps a tenth
+/// of a millimetre within a kilometre, the double origin keeps map coordinates (UTM) exact.
+///
+/// `normals`, `colors` and `labels` are empty or one a point.
+struct cloud {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> points = {};
+  std::vector<Eigen::Vector3f> normals = {};
+  std::vector<color> colors = {};
+  std::vector<std::uint32_t> labels = {};
+  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] bool empty() const { return points.empty(); }
+  [[nodiscard]] Eigen::Vector3d position(std::size_t i) const {
+    return origin + points[i].cast<double>();
+  }
+};
+
+/// The origin that readers give a cloud whose box is [low, high]: 0 where floats hold it well
+/// (|coordinate| < 1024), else the box centre in whole units.
+[[nodiscard]] inline Eigen::Vector3d natural_origin(const Eigen::Vector3d& low,
+                                                    const Eigen::Vector3d& high) {
+  if (low.cwiseAbs().maxCoeff() < 1024 && high.cwiseAbs().maxCoeff() < 1024)
+    return Eigen::Vector3d::Zero();
+  return ((low + high) / 2).array().round();
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/box.hpp
+
+namespace aib::cloud {
+
+/// A box along the axes, both ends included. Empty until something is added.
+struct box {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+
+  [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
+  [[nodiscard]] Eigen::Vector3d size() const { return high - low; }
+  [[nodiscard]] Eigen::Vector3d centre() const { return (low + high) / 2; }
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  }
+  void add(const Eigen::Vector3d& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+/// Box of the finite points among `points`, which are counted from `origin`.
+[[nodiscard]] inline box bounds(std::span<const Eigen::Vector3f> points,
+                                const Eigen::Vector3d& origin) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(infinity);
+  Eigen::Vector3f high = -low;
+  for (const Eigen::Vector3f& p : points) {
+    if (!p.allFinite()) continue;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {origin + low.cast<double>(), origin + high.cast<double>()};
+}
+
+/// Box of the finite points of a cloud.
+[[nodiscard]] inline box bounds(const cloud& c) { return bounds(c.points, c.origin); }
+
+}  // namespace aib::cloud
+
+// aib/cloud/positions.hpp
+
+namespace aib::cloud {
+
+/// Whether the three coordinates are finite.
+[[nodiscard]] inline bool is_finite(const Eigen::Vector3f& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+}
+
+/// Positions in double as the float points of a cloud, counted from their natural origin.
+struct placed_points {
+  Eigen::Vector3d origin;
+  std::vector<Eigen::Vector3f> points;
+};
+
+/// Places n positions; `position(i)` is called twice for each i. Non-finite positions stay what
+/// they are and have no part in the origin.
+template <class Position>
+[[nodiscard]] placed_points place(std::size_t n, Position&& position) {
+  box all;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d p = position(i);
+    if (p.allFinite()) all.add(p);
+  }
+  placed_points placed;
+  placed.origin = all.empty() ? Eigen::Vector3d(0, 0, 0) : natural_origin(all.low, all.high);
+  placed.points.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d p = position(i) - placed.origin;
+    placed.points[i] = p.cast<float>();
+  }
+  return placed;
+}
+
+/// The cloud of a range of points of any type that `point_traits` knows.
+template <point_range Range>
+[[nodiscard]] cloud from_points(const Range& range) {
+  const auto at = [&](std::size_t i) {
+    using difference = std::ranges::range_difference_t<const Range>;
+    return as_vector<double>(std::ranges::begin(range)[static_cast<difference>(i)]);
+  };
+  placed_points placed = place(static_cast<std::size_t>(std::ranges::size(range)), at);
+  return {.origin = placed.origin, .points = std::move(placed.points)};
+}
+
+/// The finite points of a cloud as floats from a chosen origin. Borrows the cloud where nothing has
+/// to be changed.
+class finite_points {
+ public:
+  finite_points(const cloud& source, const Eigen::Vector3d& origin) : n_given_(source.size()) {
+    if (source.size() > std::numeric_limits<std::uint32_t>::max()) {
+      throw argument_error(
+          message("cloud: at most 4 294 967 295 points expected, found ", source.size()));
+    }
+    if (source.origin == origin && all_finite(source.points)) {
+      borrowed_ = source.points;
+    } else {
+      copy_finite(source, source.origin - origin);
+    }
+  }
+
+  [[nodiscard]] std::span<const Eigen::Vector3f> points() const {
+    return copied_ ? std::span<const Eigen::Vector3f>(own_) : borrowed_;
+  }
+  [[nodiscard]] std::size_t n_given() const { return n_given_; }
+  [[nodiscard]] std::size_t n_dropped() const { return n_given_ - points().size(); }
+
+  /// Index in the cloud of finite point i.
+  [[nodiscard]] std::size_t source_index(std::size_t i) const { return copied_ ? kept_[i] : i; }
+
+ private:
+  static bool all_finite(std::span<const Eigen::Vector3f> points) {
+    for (const Eigen::Vector3f& p : points) {
+      if (!is_finite(p)) return false;
+    }
+    return true;
+  }
+
+  void copy_finite(const cloud& source, const Eigen::Vector3d& shift) {
+    copied_ = true;
+    own_.reserve(source.size());
+    kept_.reserve(source.size());
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      const Eigen::Vector3d moved = shift + source.points[i].cast<double>();
+      const Eigen::Vector3f p = moved.cast<float>();
+      if (!is_finite(p)) continue;
+      own_.push_back(p);
+      kept_.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+
+  std::size_t n_given_;
+  bool copied_ = false;
+  std::span<const Eigen::Vector3f> borrowed_;
+  std::vector<Eigen::Vector3f> own_;
+  std::vector<std::uint32_t> kept_;
+};
+
+}  // namespace aib::cloud
 
 // aib/core/executor.hpp
 
@@ -376,6 +1665,233 @@ T reduce_chunks(std::size_t n,
 
 }  // namespace aib
 
+// aib/align/icp.hpp
+
+namespace aib::align {
+
+/// What an iteration makes small.
+enum class icp_metric {
+  point,  ///< distances between corresponding points
+  plane,  ///< distances along the normals of the reference
+};
+
+struct icp_options {
+  /// A pair farther apart is none. Several distances are a schedule, run one after another.
+  std::vector<double> max_distance = {};
+  icp_metric metric = icp_metric::point;
+  bool with_scale = false;
+  math::sim3 init = {};              ///< ref_from_est to begin with
+  std::size_t max_iterations = 100;  ///< for each distance of the schedule
+  double relative_change = 1e-9;     ///< of fitness and rmse, below which it has converged
+  unsigned threads = 0;              ///< 0: all
+};
+
+struct icp_result {
+  math::sim3 transform;  ///< ref_from_est
+  double fitness;        ///< share of the estimate that has a corresponding point
+  double rmse;           ///< of the distances of corresponding points
+  std::size_t n_pairs;
+  std::size_t n_iterations;  ///< of the whole schedule
+  bool converged;            ///< the last stage stopped before max_iterations
+};
+
+/// Iterative closest point: moves the estimate onto the reference from a rough alignment.
+///
+/// Correspondences are nearest neighbours in double below max_distance. The update is Umeyama's for
+/// points, a linearised least-squares step for planes (needs normals of the reference). The same
+/// for any number of threads.
+///
+/// Throws argument_error without a positive max_distance or without normals where they are needed,
+/// undefined_error if a cloud has no finite point or no pair is near enough.
+/// Source: Besl and McKay, PAMI 1992; Chen and Medioni, IVC 1992; stopping rule as Open3D.
+[[nodiscard]] icp_result icp(const cloud::cloud& estimate,
+                             const cloud::cloud& reference,
+                             const icp_options& options);
+
+namespace detail {
+
+/// Finite positions of a cloud, counted from an origin, and where each stood.
+struct icp_points {
+  std::vector<Eigen::Vector3d> position;
+  std::vector<std::size_t> source;
+
+  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin) {
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      if (!cloud::is_finite(c.points[i])) continue;
+      position.push_back(c.position(i) - origin);
+      source.push_back(i);
+    }
+    if (position.empty()) {
+      throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
+    }
+  }
+
+  // The interface that nanoflann asks for.
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return position[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// Corresponding points, the estimate's as they lie now.
+struct icp_pairs {
+  std::vector<Eigen::Vector3d> estimate;
+  std::vector<Eigen::Vector3d> reference;
+  std::vector<Eigen::Vector3d> normal;  ///< of the reference, for planes
+  double fitness = 0;
+  double rmse = 0;
+};
+
+class icp_solver {
+ public:
+  icp_solver(const cloud::cloud& estimate,
+             const cloud::cloud& reference,
+             const icp_options& options)
+      : options_(options),
+        reference_cloud_(reference),
+        estimate_(estimate, reference.origin),
+        reference_(reference, reference.origin),
+        tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+
+  [[nodiscard]] icp_result run();
+
+ private:
+  using metric = nanoflann::L2_Simple_Adaptor<double, icp_points>;
+  using tree = nanoflann::KDTreeSingleIndexAdaptor<metric, icp_points, 3, std::size_t>;
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  [[nodiscard]] std::vector<std::size_t> nearest(std::span<const Eigen::Vector3d> moved,
+                                                 double max_distance) const;
+  [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
+  [[nodiscard]] math::sim3 step(const icp_pairs& p) const;
+  [[nodiscard]] math::sim3 plane_step(const icp_pairs& p) const;
+
+  const icp_options& options_;
+  const cloud::cloud& reference_cloud_;
+  icp_points estimate_;
+  icp_points reference_;
+  tree tree_;
+};
+
+inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
+                                                    double max_distance) const {
+  std::vector<std::size_t> match(moved.size(), none);
+  for_each_chunk(moved.size(), 4096, options_.threads, {}, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      std::size_t index = 0;
+      double squared = 0;
+      tree_.knnSearch(moved[i].data(), 1, &index, &squared);
+      if (squared < max_distance * max_distance) match[i] = index;
+    }
+  });
+  return match;
+}
+
+inline icp_pairs icp_solver::pairs(const math::sim3& now, double max_distance) const {
+  std::vector<Eigen::Vector3d> moved;
+  moved.reserve(estimate_.position.size());
+  for (const Eigen::Vector3d& p : estimate_.position) moved.push_back(now * p);
+  const auto match = nearest(moved, max_distance);
+  icp_pairs found;
+  double squares = 0;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (match[i] == none) continue;
+    const Eigen::Vector3d& to = reference_.position[match[i]];
+    found.estimate.push_back(moved[i]);
+    found.reference.push_back(to);
+    if (options_.metric == icp_metric::plane) {
+      const std::size_t source = reference_.source[match[i]];
+      found.normal.push_back(reference_cloud_.normals[source].cast<double>());
+    }
+    squares += (moved[i] - to).squaredNorm();
+  }
+  const auto n = static_cast<double>(found.estimate.size());
+  found.fitness = n / static_cast<double>(moved.size());
+  found.rmse = n > 0 ? std::sqrt(squares / n) : 0;
+  return found;
+}
+
+/// Solves for a small turn, shift and (with scale) stretch that bring the estimate onto the planes.
+inline math::sim3 icp_solver::plane_step(const icp_pairs& p) const {
+  const int unknowns = options_.with_scale ? 7 : 6;
+  Eigen::MatrixXd normal_matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+  for (std::size_t i = 0; i < p.estimate.size(); ++i) {
+    const Eigen::Vector3d& x = p.estimate[i];
+    const Eigen::Vector3d& n = p.normal[i];
+    const double residual = n.dot(p.reference[i] - x);
+    Eigen::VectorXd row(unknowns);
+    row.head<3>() = x.cross(n);
+    row.segment<3>(3) = n;
+    if (options_.with_scale) row[6] = n.dot(x);
+    if (!row.allFinite()) continue;
+    normal_matrix += row * row.transpose();
+    right += row * residual;
+  }
+  const Eigen::VectorXd u = normal_matrix.ldlt().solve(right);
+  if (!u.allFinite()) throw undefined_error("align::icp: the planes do not hold the estimate");
+  const Eigen::Vector3d turn = u.head<3>();
+  return {options_.with_scale ? 1 + u[6] : 1, math::rotation_from(turn), u.segment<3>(3)};
+}
+
+inline math::sim3 icp_solver::step(const icp_pairs& p) const {
+  if (options_.metric == icp_metric::plane) return plane_step(p);
+  return umeyama(p.estimate, p.reference, {.scale = options_.with_scale});
+}
+
+inline icp_result icp_solver::run() {
+  const Eigen::Vector3d& origin = reference_cloud_.origin;
+  const math::sim3 to_local{1, Eigen::Matrix3d::Identity(), -origin};
+  math::sim3 now = to_local * options_.init * to_local.inverse();
+  icp_result result{};
+  for (const double distance : options_.max_distance) {
+    icp_pairs p = pairs(now, distance);
+    result.converged = false;
+    for (std::size_t i = 0; i < options_.max_iterations && !result.converged; ++i) {
+      if (p.estimate.empty()) {
+        throw undefined_error(
+            message("align::icp: no point of the estimate within ", distance, " of the reference"));
+      }
+      now = step(p) * now;
+      icp_pairs next = pairs(now, distance);
+      result.converged = std::abs(next.fitness - p.fitness) < options_.relative_change &&
+                         std::abs(next.rmse - p.rmse) < options_.relative_change;
+      p = std::move(next);
+      ++result.n_iterations;
+    }
+    result.fitness = p.fitness;
+    result.rmse = p.rmse;
+    result.n_pairs = p.estimate.size();
+  }
+  result.transform = to_local.inverse() * now * to_local;
+  return result;
+}
+
+inline void check_icp(const cloud::cloud& reference, const icp_options& options) {
+  if (options.max_distance.empty()) throw argument_error("align::icp: max_distance expected");
+  for (const double d : options.max_distance) {
+    if (!(d > 0)) throw argument_error(message("align::icp: max_distance > 0 expected, found ", d));
+  }
+  if (options.metric == icp_metric::plane && reference.normals.size() != reference.size()) {
+    throw argument_error("align::icp: metric plane expects a reference with normals");
+  }
+}
+
+}  // namespace detail
+
+inline icp_result icp(const cloud::cloud& estimate,
+                      const cloud::cloud& reference,
+                      const icp_options& options) {
+  detail::check_icp(reference, options);
+  return detail::icp_solver(estimate, reference, options).run();
+}
+
+}  // namespace aib::align
+
 // aib/core/isa.hpp
 
 /// Names the instruction set that this translation unit is compiled for. Code whose machine form
@@ -403,75 +1919,6 @@ inline constexpr const char* instruction_set = AIB_ISA_TEXT(AIB_ISA);
 
 #undef AIB_ISA_TEXT
 #undef AIB_ISA_TEXT_
-
-}  // namespace aib
-
-// aib/core/random.hpp
-
-namespace aib {
-
-/// A well-mixed 64-bit number for a counter: the same for any order of calls.
-/// Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
-/// (SplitMix64).
-[[nodiscard]] constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t counter) {
-  std::uint64_t z = seed + (counter + 1) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-/// Seeded random numbers, the same on every machine. The distributions are our own because those of
-/// the standard library differ between implementations.
-///
-/// Satisfies std::uniform_random_bit_generator. Source of the generator: xoshiro256++, Blackman and
-/// Vigna, 2021.
-class random_engine {
- public:
-  using result_type = std::uint64_t;
-
-  explicit constexpr random_engine(std::uint64_t seed = 1) {
-    for (std::uint64_t i = 0; i < 4; ++i) state_[i] = random_bits(seed, i);
-  }
-
-  static constexpr result_type min() { return 0; }
-  static constexpr result_type max() { return ~result_type{0}; }
-
-  constexpr result_type operator()() {
-    const auto rotate = [](std::uint64_t x, int k) { return (x << k) | (x >> (64 - k)); };
-    const std::uint64_t result = rotate(state_[0] + state_[3], 23) + state_[0];
-    const std::uint64_t t = state_[1] << 17;
-    state_[2] ^= state_[0];
-    state_[3] ^= state_[1];
-    state_[1] ^= state_[2];
-    state_[0] ^= state_[3];
-    state_[2] ^= t;
-    state_[3] = rotate(state_[3], 45);
-    return result;
-  }
-
-  /// Uniform in [0, 1), 53 random bits.
-  constexpr double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
-
-  /// Uniform in [low, high).
-  constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
-
-  /// Uniform integer in [0, n), n > 0.
-  constexpr std::uint64_t below(std::uint64_t n) {
-    const std::uint64_t uneven = (0 - n) % n;  // 2^64 mod n values would come up once too often
-    std::uint64_t bits = (*this)();
-    while (bits < uneven) bits = (*this)();
-    return bits % n;
-  }
-
-  /// Standard normal (Box and Muller, one of the two values used).
-  double normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-
- private:
-  std::uint64_t state_[4] = {};
-};
 
 }  // namespace aib
 
@@ -763,1185 +2210,6 @@ inline double sum(f64x4 a) {
 
 }  // namespace AIB_ISA
 }  // namespace aib
-
-// aib/math/camera.hpp
-
-namespace aib::math {
-
-/// Camera models with COLMAP's numbers, up to COLMAP 4.2.
-enum class camera_model : std::int32_t {
-  simple_pinhole = 0,
-  pinhole = 1,
-  simple_radial = 2,
-  radial = 3,
-  opencv = 4,
-  opencv_fisheye = 5,
-  full_opencv = 6,
-  fov = 7,
-  simple_radial_fisheye = 8,
-  radial_fisheye = 9,
-  thin_prism_fisheye = 10,
-  rad_tan_thin_prism_fisheye = 11,
-  simple_division = 12,
-  division = 13,
-  simple_fisheye = 14,
-  fisheye = 15,
-  eucm = 16,
-  equirectangular = 17,
-};
-
-/// What COLMAP calls a model and how its parameters begin.
-struct camera_model_info {
-  std::string_view name;  ///< as in cameras.txt
-  std::size_t n_parameters;
-  std::size_t n_focal;  ///< 1: f, cx, cy, ...   2: fx, fy, cx, cy, ...   0: no focal length
-};
-
-inline constexpr std::array<camera_model_info, 18> camera_models{{
-    {"SIMPLE_PINHOLE", 3, 1},
-    {"PINHOLE", 4, 2},
-    {"SIMPLE_RADIAL", 4, 1},
-    {"RADIAL", 5, 1},
-    {"OPENCV", 8, 2},
-    {"OPENCV_FISHEYE", 8, 2},
-    {"FULL_OPENCV", 12, 2},
-    {"FOV", 5, 2},
-    {"SIMPLE_RADIAL_FISHEYE", 4, 1},
-    {"RADIAL_FISHEYE", 5, 1},
-    {"THIN_PRISM_FISHEYE", 12, 2},
-    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2},
-    {"SIMPLE_DIVISION", 4, 1},
-    {"DIVISION", 5, 2},
-    {"SIMPLE_FISHEYE", 3, 1},
-    {"FISHEYE", 4, 2},
-    {"EUCM", 6, 2},
-    {"EQUIRECTANGULAR", 2, 0},
-}};
-
-[[nodiscard]] constexpr const camera_model_info& info(camera_model model) {
-  return camera_models[static_cast<std::size_t>(model)];
-}
-
-/// The model of COLMAP's number or name; nothing where COLMAP (up to 4.2) has none such.
-[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::int64_t id) {
-  if (id < 0 || id >= static_cast<std::int64_t>(camera_models.size())) return std::nullopt;
-  return static_cast<camera_model>(id);
-}
-[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::string_view name) {
-  for (std::size_t i = 0; i < camera_models.size(); ++i) {
-    if (camera_models[i].name == name) return static_cast<camera_model>(i);
-  }
-  return std::nullopt;
-}
-
-/// Intrinsics of a camera. Pixel (0.5, 0.5) is the centre of the top left pixel.
-struct camera {
-  camera_model model = camera_model::pinhole;
-  std::uint64_t width = 0;         ///< pixels
-  std::uint64_t height = 0;        ///< pixels
-  std::vector<double> parameters;  ///< in COLMAP's order, pixels where they are lengths
-
-  [[nodiscard]] bool has_focal() const { return info(model).n_focal > 0; }
-
-  /// Focal lengths and principal point in pixels. Throw argument_error where the model has none.
-  [[nodiscard]] double fx() const;
-  [[nodiscard]] double fy() const;
-  [[nodiscard]] double cx() const;
-  [[nodiscard]] double cy() const;
-};
-
-namespace detail {
-
-inline double pinhole_parameter(const camera& c, std::size_t index) {
-  if (!c.has_focal())
-    throw argument_error(message("camera: ", info(c.model).name, " has no focal length"));
-  if (index >= c.parameters.size()) {
-    throw argument_error(message("camera: ", info(c.model).name, " expects ",
-                                 info(c.model).n_parameters, " parameters, found ",
-                                 c.parameters.size()));
-  }
-  return c.parameters[index];
-}
-
-}  // namespace detail
-
-inline double camera::fx() const { return detail::pinhole_parameter(*this, 0); }
-inline double camera::fy() const {
-  return detail::pinhole_parameter(*this, info(model).n_focal - 1);
-}
-inline double camera::cx() const { return detail::pinhole_parameter(*this, info(model).n_focal); }
-inline double camera::cy() const {
-  return detail::pinhole_parameter(*this, info(model).n_focal + 1);
-}
-
-/// A camera without distortion.
-[[nodiscard]] inline camera pinhole(
-    std::uint64_t width, std::uint64_t height, double fx, double fy, double cx, double cy) {
-  return {camera_model::pinhole, width, height, {fx, fy, cx, cy}};
-}
-
-}  // namespace aib::math
-
-// aib/math/log_ratio.hpp
-
-namespace aib::math {
-
-inline namespace AIB_ISA {
-
-/// ln(a / b) in four lanes, of positive, finite, normal doubles: within 3e-16 of the largest of 1
-/// and the result. The ratio never overflows; equal numbers give exactly 0; the same bits on every
-/// machine.
-///
-/// ln(a / b) = 2 atanh((a - b) / (a + b)), taken on the mantissas by its Taylor series.
-inline f64x4 log_ratio(f64x4 a, f64x4 b) {
-  const f64x4 zero = f64x4::broadcast(0), one = f64x4::broadcast(1);
-  const f64x4 half = f64x4::broadcast(0.5), root = f64x4::broadcast(std::numbers::sqrt2);
-
-  // The larger mantissa is halved where the ratio leaves [1 / sqrt 2, sqrt 2].
-  f64x4 ma = mantissa(a), mb = mantissa(b);
-  const f64x4 halve_a = choose(root * mb, ma, one, zero);
-  const f64x4 halve_b = choose(root * ma, mb, one, zero);
-  ma = ma - half * ma * halve_a;
-  mb = mb - half * mb * halve_b;
-  const f64x4 e = exponent(a) - exponent(b) + (halve_a - halve_b);
-
-  // |s| <= 0.1716: the first term left out is below 3e-17 of the sum.
-  const f64x4 s = (ma - mb) / (ma + mb);
-  const f64x4 z = s * s;
-  const auto term = [&](f64x4 higher, double coefficient) {
-    return higher * z + f64x4::broadcast(coefficient);
-  };
-  f64x4 series = term(f64x4::broadcast(1.0 / 19), 1.0 / 17);
-  series = term(term(series, 1.0 / 15), 1.0 / 13);
-  series = term(term(series, 1.0 / 11), 1.0 / 9);
-  series = term(term(series, 1.0 / 7), 1.0 / 5);
-  series = term(series, 1.0 / 3);
-  const f64x4 twice = s + s;
-  // ln 2 in two parts: the first has few enough bits for e * ln2_high to be exact.
-  const f64x4 ln2_high = f64x4::broadcast(0x1.62e42fefa3p-1);
-  const f64x4 ln2_low = f64x4::broadcast(0x1.3de6af278ece6p-42);
-  return e * ln2_high + (twice + twice * (z * series) + e * ln2_low);
-}
-
-/// The same of two numbers.
-inline double log_ratio(double a, double b) {
-  double result[4];
-  log_ratio(f64x4::broadcast(a), f64x4::broadcast(b)).store(result);
-  return result[0];
-}
-
-}  // namespace AIB_ISA
-
-}  // namespace aib::math
-
-// aib/math/projection.hpp
-
-namespace aib::math {
-
-/// Pixel of a point, of every camera model; nothing where the model has none: behind a perspective
-/// camera, beyond the range of a division model or of EUCM, at the centre.
-///
-/// p_in_camera   x right, y down, z forward, any unit
-///
-/// Throws argument_error if the camera has another number of parameters than its model.
-/// Source: COLMAP 4.2, src/colmap/sensor/models.h; FOV: Devernay and Faugeras 2001; division:
-/// Fitzgibbon, CVPR 2001; EUCM: Khomutenko, Garcia, Martinet, RA-L 2016.
-std::optional<Eigen::Vector2d> project(const camera& camera, const Eigen::Vector3d& p_in_camera);
-
-/// Direction in the camera, unit length, of the points that project to a pixel; nothing where no
-/// point does. The inverse of `project` to 1e-9 pixels within the range where the distortion grows.
-///
-/// Throws argument_error if the camera has another number of parameters than its model.
-std::optional<Eigen::Vector3d> unproject(const camera& camera, const Eigen::Vector2d& pixel);
-
-namespace detail {
-
-using point2 = Eigen::Vector2d;
-
-/// Parameters behind focal length and principal point. Throws argument_error if they are too few or
-/// too many.
-inline std::span<const double> distortion_parameters(const camera& c) {
-  const camera_model_info& model = info(c.model);
-  if (c.parameters.size() != model.n_parameters) {
-    throw argument_error(message("camera: ", model.name, " expects ", model.n_parameters,
-                                 " parameters, found ", c.parameters.size()));
-  }
-  return std::span(c.parameters).subspan(model.n_focal == 0 ? 2 : model.n_focal + 2);
-}
-
-/// How a direction becomes a point of the plane that is distorted.
-enum class image_plane { perspective, equidistant, other };
-
-constexpr image_plane plane_of(camera_model model) {
-  switch (model) {
-    case camera_model::simple_pinhole:
-    case camera_model::pinhole:
-    case camera_model::simple_radial:
-    case camera_model::radial:
-    case camera_model::opencv:
-    case camera_model::full_opencv:
-    case camera_model::fov:
-      return image_plane::perspective;
-    case camera_model::opencv_fisheye:
-    case camera_model::simple_radial_fisheye:
-    case camera_model::radial_fisheye:
-    case camera_model::thin_prism_fisheye:
-    case camera_model::rad_tan_thin_prism_fisheye:
-    case camera_model::simple_fisheye:
-    case camera_model::fisheye:
-      return image_plane::equidistant;
-    default:
-      return image_plane::other;
-  }
-}
-
-/// 1 + k[0] r2 + k[1] r2^2 + ...
-inline double radial(std::span<const double> k, double r2) {
-  double sum = 0;
-  for (std::size_t i = k.size(); i > 0; --i) sum = (sum + k[i - 1]) * r2;
-  return 1 + sum;
-}
-
-/// Decentring of Brown: p1 is the weight of the y axis, p2 of the x axis.
-inline point2 decentred(const point2& p, double p1, double p2) {
-  const double xy = 2 * p.x() * p.y(), r2 = p.squaredNorm();
-  return {p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
-}
-
-inline point2 distort_full_opencv(std::span<const double> k, const point2& p) {
-  const double numerator[] = {k[0], k[1], k[4]}, r2 = p.squaredNorm();
-  return p * (radial(numerator, r2) / radial(k.subspan(5, 3), r2)) + decentred(p, k[2], k[3]);
-}
-
-inline point2 distort_fov(double omega, const point2& p) {
-  const double r = p.norm();
-  if (omega == 0) return p;
-  const double slope = 2 * std::tan(omega / 2);
-  return p * (r < 1e-12 ? slope / omega : std::atan(r * slope) / (r * omega));
-}
-
-inline point2 distort_thin_prism(std::span<const double> k, const point2& p) {
-  const double radii[] = {k[0], k[1], k[4], k[5]}, r2 = p.squaredNorm();
-  return p * radial(radii, r2) + decentred(p, k[2], k[3]) + r2 * point2(k[6], k[7]);
-}
-
-inline point2 distort_rad_tan_thin_prism(std::span<const double> k, const point2& p) {
-  const point2 q = p * radial(k.first(6), p.squaredNorm());
-  const double r2 = q.squaredNorm();
-  return q + decentred(q, k[7], k[6]) +
-         point2(k[8] * r2 + k[9] * r2 * r2, k[10] * r2 + k[11] * r2 * r2);
-}
-
-/// Distorted point of the image plane of a model that has one.
-inline point2 distort(camera_model model, std::span<const double> k, const point2& p) {
-  switch (model) {
-    case camera_model::simple_radial:
-    case camera_model::radial:
-    case camera_model::simple_radial_fisheye:
-    case camera_model::radial_fisheye:
-    case camera_model::opencv_fisheye:
-      return p * radial(k, p.squaredNorm());
-    case camera_model::opencv:
-      return p * radial(k.first(2), p.squaredNorm()) + decentred(p, k[2], k[3]);
-    case camera_model::full_opencv:
-      return distort_full_opencv(k, p);
-    case camera_model::fov:
-      return distort_fov(k[0], p);
-    case camera_model::thin_prism_fisheye:
-      return distort_thin_prism(k, p);
-    case camera_model::rad_tan_thin_prism_fisheye:
-      return distort_rad_tan_thin_prism(k, p);
-    default:
-      return p;
-  }
-}
-
-inline Eigen::Matrix2d distortion_slope(camera_model model,
-                                        std::span<const double> k,
-                                        const point2& p) {
-  constexpr double step = 1e-6;
-  Eigen::Matrix2d slope;
-  for (int axis = 0; axis < 2; ++axis) {
-    const point2 aside = step * point2::Unit(axis);
-    slope.col(axis) = (distort(model, k, p + aside) - distort(model, k, p - aside)) / (2 * step);
-  }
-  return slope;
-}
-
-/// The point that `distort` takes to `goal`, by Newton's method from there. Nothing where the steps
-/// end beyond the range in which the distortion grows.
-inline std::optional<point2> undistort(camera_model model,
-                                       std::span<const double> k,
-                                       const point2& goal) {
-  point2 p = goal;
-  for (int round = 0; round < 50; ++round) {
-    const point2 miss = distort(model, k, p) - goal;
-    if (!miss.allFinite()) return std::nullopt;
-    if (miss.norm() <= 1e-15 * (1 + goal.norm())) break;
-    p -= distortion_slope(model, k, p).inverse() * miss;
-  }
-  const bool there = (distort(model, k, p) - goal).norm() <= 1e-13 * (1 + goal.norm());
-  const bool this_side = p.dot(goal) > 0 || goal.norm() < 1e-2;
-  if (!there || !this_side || !(distortion_slope(model, k, p).determinant() > 0))
-    return std::nullopt;
-  return p;
-}
-
-inline std::optional<point2> on_plane(image_plane plane, const Eigen::Vector3d& p) {
-  if (plane == image_plane::perspective) {
-    if (!(p.z() > 0)) return std::nullopt;
-    return point2(p.head<2>() / p.z());
-  }
-  const double r = p.head<2>().norm();
-  if (r == 0) return p.z() > 0 ? std::optional(point2(0, 0)) : std::nullopt;
-  return point2(p.head<2>() * (std::atan2(r, p.z()) / r));
-}
-
-inline std::optional<Eigen::Vector3d> off_plane(image_plane plane, const point2& p) {
-  if (plane == image_plane::perspective) return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
-  const double angle = p.norm();
-  if (angle > std::numbers::pi) return std::nullopt;
-  const double share = angle == 0 ? 1 : std::sin(angle) / angle;
-  return Eigen::Vector3d(share * p.x(), share * p.y(), std::cos(angle));
-}
-
-/// The undistorted point of a division model is (x, y, 1 + k r^2).
-inline std::optional<point2> project_division(double k, const Eigen::Vector3d& p) {
-  const double r2 = p.head<2>().squaredNorm();
-  // (x, y) s with s z = 1 + k r2 s^2: the root that is 1 / z without distortion.
-  const double root = p.z() * p.z() - 4 * k * r2;
-  if (!(root >= 0)) return std::nullopt;
-  const double denominator = p.z() + std::sqrt(root);
-  if (!(denominator > 0)) return std::nullopt;
-  return point2(p.head<2>() * (2 / denominator));
-}
-
-inline std::optional<point2> project_eucm(double alpha, double beta, const Eigen::Vector3d& p) {
-  const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
-  const double w = alpha > 0.5 ? (1 - alpha) / alpha : alpha / (1 - alpha);
-  const double denominator = alpha * d + (1 - alpha) * p.z();
-  if (!(p.z() > -w * d) || !(denominator > 0)) return std::nullopt;
-  return point2(p.head<2>() / denominator);
-}
-
-inline std::optional<Eigen::Vector3d> unproject_eucm(double alpha, double beta, const point2& p) {
-  const double r2 = p.squaredNorm();
-  const double root = 1 - (2 * alpha - 1) * beta * r2;
-  if (!(root >= 0)) return std::nullopt;
-  const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(root) + 1 - alpha);
-  return Eigen::Vector3d(p.x(), p.y(), z).normalized();
-}
-
-/// Longitude to the right and latitude downwards over the whole image.
-inline std::optional<point2> project_sphere(double width, double height, const Eigen::Vector3d& p) {
-  if (p.squaredNorm() == 0) return std::nullopt;
-  const double longitude = std::atan2(p.x(), p.z());
-  const double latitude = std::atan2(p.y(), std::hypot(p.x(), p.z()));
-  return point2((longitude / (2 * std::numbers::pi) + 0.5) * width,
-                (latitude / std::numbers::pi + 0.5) * height);
-}
-
-inline Eigen::Vector3d unproject_sphere(double width, double height, const point2& pixel) {
-  const double longitude = 2 * std::numbers::pi * (pixel.x() / width - 0.5);
-  const double latitude = std::numbers::pi * (pixel.y() / height - 0.5);
-  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
-          std::cos(latitude) * std::cos(longitude)};
-}
-
-}  // namespace detail
-
-inline std::optional<Eigen::Vector2d> project(const camera& camera,
-                                              const Eigen::Vector3d& p_in_camera) {
-  const std::span<const double> k = detail::distortion_parameters(camera);
-  if (!p_in_camera.allFinite()) return std::nullopt;
-  std::optional<detail::point2> p;
-  switch (camera.model) {
-    case camera_model::equirectangular:
-      return detail::project_sphere(camera.parameters[0], camera.parameters[1], p_in_camera);
-    case camera_model::simple_division:
-    case camera_model::division:
-      p = detail::project_division(k[0], p_in_camera);
-      break;
-    case camera_model::eucm:
-      p = detail::project_eucm(k[0], k[1], p_in_camera);
-      break;
-    default:
-      p = detail::on_plane(detail::plane_of(camera.model), p_in_camera);
-      if (p) p = detail::distort(camera.model, k, *p);
-  }
-  if (!p) return std::nullopt;
-  return Eigen::Vector2d(camera.fx() * p->x() + camera.cx(), camera.fy() * p->y() + camera.cy());
-}
-
-inline std::optional<Eigen::Vector3d> unproject(const camera& camera,
-                                                const Eigen::Vector2d& pixel) {
-  const std::span<const double> k = detail::distortion_parameters(camera);
-  if (!pixel.allFinite()) return std::nullopt;
-  if (camera.model == camera_model::equirectangular)
-    return detail::unproject_sphere(camera.parameters[0], camera.parameters[1], pixel);
-  const detail::point2 p((pixel.x() - camera.cx()) / camera.fx(),
-                         (pixel.y() - camera.cy()) / camera.fy());
-  switch (camera.model) {
-    case camera_model::simple_division:
-    case camera_model::division:
-      return Eigen::Vector3d(p.x(), p.y(), 1 + k[0] * p.squaredNorm()).normalized();
-    case camera_model::eucm:
-      return detail::unproject_eucm(k[0], k[1], p);
-    default: {
-      const auto undistorted = detail::undistort(camera.model, k, p);
-      if (!undistorted) return std::nullopt;
-      return detail::off_plane(detail::plane_of(camera.model), *undistorted);
-    }
-  }
-}
-
-}  // namespace aib::math
-
-// aib/math/rotation.hpp
-
-namespace aib::math {
-
-inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
-
-/// Angle in degrees of an angle in radians.
-[[nodiscard]] constexpr double degrees(double radians) { return radians * degrees_per_radian; }
-
-/// Angle in radians of an angle in degrees.
-[[nodiscard]] constexpr double radians(double degrees) { return degrees / degrees_per_radian; }
-
-/// Unit quaternion, Hamilton convention, scalar first. Has no alignment demands, unlike Eigen's.
-struct quaternion {
-  double w = 1;
-  double x = 0;
-  double y = 0;
-  double z = 0;
-};
-
-/// Rotation matrix of a quaternion of any length > 0.
-/// Throws argument_error if the quaternion is zero or not finite.
-Eigen::Matrix3d rotation_from(const quaternion& q);
-
-/// Unit quaternion of a rotation matrix, w >= 0.
-quaternion quaternion_from(const Eigen::Matrix3d& rotation);
-
-/// Rotation by the length of `axis_angle` (radians) about its direction.
-Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle);
-
-/// Axis times angle in radians, angle in [0, pi].
-Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation);
-
-/// Geodesic angle of a rotation in radians, [0, pi]; accurate near 0 and near pi.
-double rotation_angle(const Eigen::Matrix3d& rotation);
-
-/// A rotation and how far the matrix that it was made from lay from it.
-struct projected_rotation {
-  Eigen::Matrix3d rotation;
-  double residual;  ///< Frobenius norm of (matrix - rotation)
-};
-
-/// The rotation nearest to `matrix` in the Frobenius norm; nothing where the matrix is not finite
-/// or where its determinant is not positive.
-std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix);
-
-inline Eigen::Matrix3d rotation_from(const quaternion& q) {
-  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  if (!(norm > 0) || !std::isfinite(norm)) {
-    throw argument_error(message("math::rotation_from: quaternion (", q.w, ", ", q.x, ", ", q.y,
-                                 ", ", q.z, ") has no direction"));
-  }
-  return Eigen::Quaterniond(q.w / norm, q.x / norm, q.y / norm, q.z / norm).toRotationMatrix();
-}
-
-inline quaternion quaternion_from(const Eigen::Matrix3d& rotation) {
-  Eigen::Quaterniond q(rotation);
-  q.normalize();
-  const double sign = q.w() < 0 ? -1 : 1;
-  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
-}
-
-inline Eigen::Matrix3d rotation_from(const Eigen::Vector3d& axis_angle) {
-  const double angle = axis_angle.norm();
-  if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, axis_angle / angle).toRotationMatrix();
-}
-
-inline Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation) {
-  const quaternion q = quaternion_from(rotation);
-  const Eigen::Vector3d v(q.x, q.y, q.z);
-  const double length = v.norm();
-  if (length == 0) return Eigen::Vector3d::Zero();
-  return v * (2 * std::atan2(length, q.w) / length);
-}
-
-inline double rotation_angle(const Eigen::Matrix3d& rotation) {
-  const quaternion q = quaternion_from(rotation);
-  return 2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), q.w);
-}
-
-inline std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix) {
-  if (!matrix.allFinite() || !(matrix.determinant() > 0)) return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  return projected_rotation{rotation, (matrix - rotation).norm()};
-}
-
-}  // namespace aib::math
-
-// aib/math/rigid3.hpp
-
-namespace aib::math {
-
-/// Rigid motion of space: `b_from_a * p_in_a = p_in_b`.
-struct rigid3 {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  [[nodiscard]] rigid3 inverse() const {
-    return {rotation.transpose(), -(rotation.transpose() * translation)};
-  }
-  [[nodiscard]] bool is_finite() const { return rotation.allFinite() && translation.allFinite(); }
-  [[nodiscard]] Eigen::Matrix4d matrix() const {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = rotation;
-    m.topRightCorner<3, 1>() = translation;
-    return m;
-  }
-
-  /// c_from_a = c_from_b * b_from_a
-  friend rigid3 operator*(const rigid3& c_from_b, const rigid3& b_from_a) {
-    return {c_from_b.rotation * b_from_a.rotation,
-            c_from_b.rotation * b_from_a.translation + c_from_b.translation};
-  }
-  friend Eigen::Vector3d operator*(const rigid3& b_from_a, const Eigen::Vector3d& p_in_a) {
-    return b_from_a.rotation * p_in_a + b_from_a.translation;
-  }
-};
-
-}  // namespace aib::math
-
-// aib/math/sim3.hpp
-
-namespace aib::math {
-
-/// Similarity of space: `p_in_b = scale * rotation * p_in_a + translation`.
-struct sim3 {
-  double scale = 1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  [[nodiscard]] sim3 inverse() const {
-    const Eigen::Matrix3d r = rotation.transpose();
-    return {1 / scale, r, -(r * translation) / scale};
-  }
-  [[nodiscard]] Eigen::Matrix4d matrix() const {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = scale * rotation;
-    m.topRightCorner<3, 1>() = translation;
-    return m;
-  }
-
-  friend sim3 operator*(const sim3& c_from_b, const sim3& b_from_a) {
-    return {c_from_b.scale * b_from_a.scale, c_from_b.rotation * b_from_a.rotation,
-            c_from_b * b_from_a.translation};
-  }
-  friend Eigen::Vector3d operator*(const sim3& b_from_a, const Eigen::Vector3d& p_in_a) {
-    return b_from_a.scale * (b_from_a.rotation * p_in_a) + b_from_a.translation;
-  }
-  /// Moves a pose: its position as a point, its axes by the rotation alone.
-  friend rigid3 operator*(const sim3& b_from_a, const rigid3& a_from_camera) {
-    return {b_from_a.rotation * a_from_camera.rotation, b_from_a * a_from_camera.translation};
-  }
-};
-
-}  // namespace aib::math
-
-// aib/stats/moments.hpp
-
-namespace aib::stats {
-
-/// Count, mean, variance and range of a stream of numbers, mergeable. Deviations are summed about a
-/// running mean, so that a small spread about a large mean is kept. Source: Chan, Golub, LeVeque,
-/// "Updating formulae and a pairwise algorithm for computing sample variances", 1979.
-class moments {
- public:
-  /// The moments of values that were summed elsewhere: `squares` is the sum of squared deviations
-  /// from `mean`. The range is not known and stays empty.
-  [[nodiscard]] static moments from(std::uint64_t count, double mean, double squares) {
-    moments m;
-    m.count_ = count;
-    m.mean_ = mean;
-    m.squares_ = squares;
-    return m;
-  }
-
-  void add(double value) {
-    ++count_;
-    const double delta = value - mean_;
-    mean_ += delta / static_cast<double>(count_);
-    squares_ += delta * (value - mean_);
-    min_ = std::min(min_, value);
-    max_ = std::max(max_, value);
-  }
-
-  moments& operator+=(const moments& other) {
-    if (other.count_ == 0) return *this;
-    if (count_ == 0) return *this = other;
-    const auto n = static_cast<double>(count_);
-    const auto m = static_cast<double>(other.count_);
-    const double delta = other.mean_ - mean_;
-    mean_ += delta * (m / (n + m));
-    squares_ += other.squares_ + delta * delta * (n * m / (n + m));
-    count_ += other.count_;
-    min_ = std::min(min_, other.min_);
-    max_ = std::max(max_, other.max_);
-    return *this;
-  }
-
-  [[nodiscard]] std::uint64_t count() const { return count_; }
-  [[nodiscard]] double mean() const { return mean_; }  ///< 0 of nothing
-  [[nodiscard]] double sum() const { return mean_ * static_cast<double>(count_); }
-  [[nodiscard]] double variance() const {  ///< population (ddof 0)
-    return count_ ? squares_ / static_cast<double>(count_) : 0;
-  }
-  [[nodiscard]] double deviation() const { return std::sqrt(variance()); }  ///< population
-  [[nodiscard]] double mean_square() const { return variance() + mean_ * mean_; }
-  [[nodiscard]] double min() const { return min_; }  ///< +inf of nothing
-  [[nodiscard]] double max() const { return max_; }  ///< -inf of nothing
-
- private:
-  std::uint64_t count_ = 0;
-  double mean_ = 0;
-  double squares_ = 0;
-  double min_ = std::numeric_limits<double>::infinity();
-  double max_ = -std::numeric_limits<double>::infinity();
-};
-
-}  // namespace aib::stats
-
-// aib/stats/quantiles.hpp
-
-namespace aib::stats {
-
-/// What a quantile between two values is.
-enum class quantile_rule {
-  linear,    ///< interpolated, numpy's default
-  lower,     ///< the smaller value (torch.median)
-  midpoint,  ///< their mean
-};
-
-/// Quantile of unsorted values, q in [0, 1]. Reorders `values`; takes linear time.
-/// Throws undefined_error if there is no value, argument_error if q is outside [0, 1].
-template <class Scalar>
-double quantile_in_place(std::span<Scalar> values,
-                         double q,
-                         quantile_rule rule = quantile_rule::linear) {
-  if (values.empty()) throw undefined_error("stats::quantile: no values");
-  if (!(q >= 0 && q <= 1))
-    throw argument_error(message("stats::quantile: q in [0, 1] expected, found ", q));
-  const double place = q * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
-  std::nth_element(values.begin(), nth, values.end());
-  const double low = static_cast<double>(*nth);
-  const double share = place - static_cast<double>(below);
-  if (share == 0 || rule == quantile_rule::lower) return low;
-  const double high = static_cast<double>(*std::min_element(nth + 1, values.end()));
-  return rule == quantile_rule::midpoint ? (low + high) / 2 : low + (high - low) * share;
-}
-
-/// As quantile_in_place, on a copy.
-template <class Scalar>
-double quantile(std::span<const Scalar> values,
-                double q,
-                quantile_rule rule = quantile_rule::linear) {
-  std::vector<Scalar> copy(values.begin(), values.end());
-  return quantile_in_place<Scalar>(copy, q, rule);
-}
-
-/// The middle value, or the mean of the two middle values.
-template <class Scalar>
-double median(std::span<const Scalar> values) {
-  return quantile(values, 0.5);
-}
-
-}  // namespace aib::stats
-
-// aib/stats/bootstrap.hpp
-
-namespace aib::stats {
-
-struct bootstrap_options {
-  std::size_t block = 10;  ///< neighbours drawn together; 1: independent values
-  std::size_t resamples = 2000;
-  double level = 0.95;  ///< share of the resampled means inside the interval
-  std::uint64_t seed = 1;
-};
-
-/// A mean and how far it may be off.
-struct interval {
-  double mean;
-  double low;
-  double high;
-  double deviation;  ///< of the resampled means: the standard error
-};
-
-/// Percentile interval of the mean of a series whose neighbours are alike, as frames of a flight
-/// that overlap by 80 % are: blocks of consecutive values are drawn with replacement, the series
-/// taken as a ring. With independent draws (block = 1) the interval of such a series is too narrow.
-/// A difference of two conditions: pass the differences frame by frame.
-///
-/// A block longer than the series is the series, and the interval a point. Throws undefined_error
-/// if there is no value, argument_error if block or resamples is 0 or level outside (0, 1).
-/// Source: Politis, Romano, "A circular block-resampling procedure for stationary data", 1992.
-[[nodiscard]] inline interval bootstrap_mean(std::span<const double> values,
-                                             const bootstrap_options& options = {}) {
-  if (values.empty()) throw undefined_error("stats::bootstrap_mean: no values");
-  if (options.block == 0 || options.resamples == 0 || !(options.level > 0 && options.level < 1)) {
-    throw argument_error(
-        message("stats::bootstrap_mean: block and resamples > 0 and level in "
-                "(0, 1) expected, found ",
-                options.block, ", ", options.resamples, " and ", options.level));
-  }
-  const std::size_t n = values.size();
-  random_engine random(options.seed);
-  std::vector<double> means(options.resamples);
-  for (double& mean : means) {
-    moments sample;
-    while (sample.count() < n) {
-      const std::size_t first = random.below(n);
-      const std::size_t length = std::min(options.block, n - sample.count());
-      for (std::size_t i = 0; i < length; ++i) sample.add(values[(first + i) % n]);
-    }
-    mean = sample.mean();
-  }
-  moments of_values, of_means;
-  for (const double v : values) of_values.add(v);
-  for (const double m : means) of_means.add(m);
-  const double tail = (1 - options.level) / 2;
-  return {.mean = of_values.mean(),
-          .low = quantile<double>(means, tail),
-          .high = quantile<double>(means, 1 - tail),
-          .deviation = of_means.deviation()};
-}
-
-}  // namespace aib::stats
-
-// aib/stats/histogram.hpp
-
-namespace aib::stats {
-
-/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
-/// dropped.
-class histogram {
- public:
-  /// Throws argument_error unless low < high and bins > 0.
-  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
-    if (!(low < high) || bins == 0) {
-      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
-                                   low, ", ", high, ", ", bins));
-    }
-  }
-
-  /// A NaN counts as above.
-  void add(double value) {
-    if (value < low_) {
-      ++below_;
-    } else if (value < high_) {
-      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
-      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
-    } else {
-      ++above_;
-    }
-  }
-
-  /// Throws argument_error if the bins differ.
-  histogram& operator+=(const histogram& other) {
-    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
-      throw argument_error("stats::histogram: the bins of merged histograms differ");
-    }
-    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
-    below_ += other.below_;
-    above_ += other.above_;
-    return *this;
-  }
-
-  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
-  [[nodiscard]] std::uint64_t below() const { return below_; }
-  [[nodiscard]] std::uint64_t above() const { return above_; }
-  [[nodiscard]] std::uint64_t total() const {
-    std::uint64_t n = below_ + above_;
-    for (const std::uint64_t c : counts_) n += c;
-    return n;
-  }
-  /// Lower edge of bin i; edge(bins) is the upper end.
-  [[nodiscard]] double edge(std::size_t i) const {
-    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
-  }
-
- private:
-  double low_, high_;
-  std::vector<std::uint64_t> counts_;
-  std::uint64_t below_ = 0;
-  std::uint64_t above_ = 0;
-};
-
-}  // namespace aib::stats
-
-// aib/stats/summary.hpp
-
-namespace aib::stats {
-
-/// Statistics of a set of errors, named as evo names them.
-struct summary {
-  std::uint64_t count;
-  double rmse;
-  double mean;
-  double median;
-  double std;  ///< population (ddof 0)
-  double min;
-  double max;
-  double sse;  ///< sum of squares
-};
-
-/// Throws undefined_error if there is no value.
-inline summary summarize(std::span<const double> errors) {
-  if (errors.empty()) throw undefined_error("stats::summarize: no values");
-  moments m;
-  double sse = 0;
-  for (const double e : errors) {
-    m.add(e);
-    sse += e * e;
-  }
-  return {.count = m.count(),
-          .rmse = std::sqrt(sse / static_cast<double>(m.count())),
-          .mean = m.mean(),
-          .median = median(errors),
-          .std = m.deviation(),
-          .min = m.min(),
-          .max = m.max(),
-          .sse = sse};
-}
-
-}  // namespace aib::stats
-
-// aib/raster/view.hpp
-
-namespace aib::raster {
-
-/// A rectangle of pixels that somebody else owns. Row-major, row 0 on top.
-template <class T>
-struct view {
-  T* data = nullptr;
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::size_t stride = 0;  ///< elements from one row to the next
-
-  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) const { return data[y * stride + x]; }
-  [[nodiscard]] std::span<T> row(std::size_t y) const { return {data + y * stride, width}; }
-  [[nodiscard]] std::size_t size() const { return width * height; }
-  [[nodiscard]] bool empty() const { return size() == 0; }
-
-  operator view<const T>() const requires(!std::is_const_v<T>) {
-    return {data, width, height, stride};
-  }
-};
-
-/// The part of a view that begins at (x, y). The caller keeps it inside.
-template <class T>
-[[nodiscard]] view<T> part(
-    view<T> whole, std::size_t x, std::size_t y, std::size_t width, std::size_t height) {
-  return {whole.data + y * whole.stride + x, width, height, whole.stride};
-}
-
-}  // namespace aib::raster
-
-// aib/raster/image.hpp
-
-namespace aib::raster {
-
-/// A rectangle of pixels, owned, rows without gaps.
-template <class T>
-class image {
- public:
-  image() = default;
-  image(std::size_t width, std::size_t height, T value = {})
-      : width_(width), height_(height), pixels_(width * height, value) {}
-
-  [[nodiscard]] std::size_t width() const { return width_; }
-  [[nodiscard]] std::size_t height() const { return height_; }
-  [[nodiscard]] std::size_t size() const { return pixels_.size(); }
-  [[nodiscard]] bool empty() const { return pixels_.empty(); }
-
-  [[nodiscard]] T* data() { return pixels_.data(); }
-  [[nodiscard]] const T* data() const { return pixels_.data(); }
-  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) { return pixels_[y * width_ + x]; }
-  [[nodiscard]] const T& operator()(std::size_t x, std::size_t y) const {
-    return pixels_[y * width_ + x];
-  }
-
-  [[nodiscard]] auto begin() { return pixels_.begin(); }
-  [[nodiscard]] auto end() { return pixels_.end(); }
-  [[nodiscard]] auto begin() const { return pixels_.begin(); }
-  [[nodiscard]] auto end() const { return pixels_.end(); }
-
-  [[nodiscard]] raster::view<T> view() { return {data(), width_, height_, width_}; }
-  [[nodiscard]] raster::view<const T> view() const { return {data(), width_, height_, width_}; }
-  operator raster::view<T>() { return view(); }
-  operator raster::view<const T>() const { return view(); }
-
-  friend bool operator==(const image&, const image&) = default;
-
- private:
-  std::size_t width_ = 0;
-  std::size_t height_ = 0;
-  std::vector<T> pixels_;
-};
-
-}  // namespace aib::raster
-
-// aib/raster/color.hpp
-
-namespace aib::raster {
-
-/// Red, green, blue, 8 bits each, sRGB as in PNG and JPEG files.
-using rgb = std::array<std::uint8_t, 3>;
-
-using color_image = image<rgb>;
-
-/// A whole number a pixel: classes, or a mask where 0 is outside.
-using label_image = image<std::uint16_t>;
-
-/// 1 where the label is not 0.
-[[nodiscard]] inline image<std::uint8_t> mask_of(const label_image& labels) {
-  image<std::uint8_t> mask(labels.width(), labels.height());
-  for (std::size_t i = 0; i < labels.size(); ++i) mask.data()[i] = labels.data()[i] != 0;
-  return mask;
-}
-
-}  // namespace aib::raster
-
-// aib/raster/colormap.hpp
-
-namespace aib::raster {
-
-/// A colour whose distances are those that people see.
-/// Source: Ottosson, "A perceptual color space for image processing", 2020.
-struct oklab {
-  double lightness;  ///< 0 black, 1 white
-  double a;          ///< green to red
-  double b;          ///< blue to yellow
-};
-
-[[nodiscard]] oklab to_oklab(const rgb& color);
-
-/// Colours outside of sRGB are cut channel by channel.
-[[nodiscard]] rgb to_rgb(const oklab& color);
-
-/// The colour at t in [0, 1] from dark blue to light yellow, in equal steps to the eye; readable
-/// with red-green blindness and in print. t is clamped, NaN is 0.
-[[nodiscard]] rgb sequential_color(double t);
-
-/// The colour at t in [-1, 1]: blue, light grey at 0, red; equal steps to the eye on both sides.
-/// t is clamped, NaN is 0.
-[[nodiscard]] rgb diverging_color(double t);
-
-namespace detail {
-
-inline double to_linear(std::uint8_t channel) {
-  const double c = channel / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-inline std::uint8_t from_linear(double c) {
-  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
-}
-
-inline oklab mix(const oklab& from, const oklab& to, double t) {
-  const auto between = [t](double x, double y) { return x + (y - x) * t; };
-  return {between(from.lightness, to.lightness), between(from.a, to.a), between(from.b, to.b)};
-}
-
-inline constexpr std::size_t color_steps = 256;
-
-/// Colours of t = 0, 1/255, ... 1 on the straight line between two colours.
-inline std::array<rgb, color_steps> color_table(const rgb& from, const rgb& to) {
-  std::array<rgb, color_steps> table;
-  const oklab first = to_oklab(from), last = to_oklab(to);
-  for (std::size_t i = 0; i < color_steps; ++i)
-    table[i] = to_rgb(mix(first, last, static_cast<double>(i) / (color_steps - 1)));
-  return table;
-}
-
-inline const rgb& at(const std::array<rgb, color_steps>& table, double t) {
-  const double place = t > 0 ? std::min(t, 1.0) * (color_steps - 1) : 0;
-  return table[static_cast<std::size_t>(place + 0.5)];
-}
-
-}  // namespace detail
-
-inline oklab to_oklab(const rgb& color) {
-  const double r = detail::to_linear(color[0]);
-  const double g = detail::to_linear(color[1]);
-  const double b = detail::to_linear(color[2]);
-  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
-  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
-  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
-          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
-          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
-}
-
-inline rgb to_rgb(const oklab& c) {
-  const auto cube = [](double x) { return x * x * x; };
-  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
-  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
-  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
-  return {detail::from_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-          detail::from_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-          detail::from_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
-}
-
-inline rgb sequential_color(double t) {
-  static const auto table = detail::color_table({0, 32, 96}, {255, 233, 69});
-  return detail::at(table, t);
-}
-
-inline rgb diverging_color(double t) {
-  static const auto below = detail::color_table({238, 238, 238}, {20, 70, 170});
-  static const auto above = detail::color_table({238, 238, 238}, {170, 30, 40});
-  return t < 0 ? detail::at(below, -t) : detail::at(above, t);
-}
-
-}  // namespace aib::raster
-
-// aib/raster/downsample.hpp
-
-namespace aib::raster {
-
-/// Which source pixel a target pixel takes.
-enum class nearest_rule {
-  centre,  ///< under the target's centre: ((2i + 1) N) div 2n
-  floor,   ///< floor(i N / n), OpenCV's INTER_NEAREST
-};
-
-/// Source index of target index i when N samples become n. Integer arithmetic: ties never depend on
-/// rounding.
-[[nodiscard]] constexpr std::size_t nearest_index(std::size_t i,
-                                                  std::size_t N,
-                                                  std::size_t n,
-                                                  nearest_rule rule) {
-  return rule == nearest_rule::centre ? ((2 * i + 1) * N) / (2 * n) : (i * N) / n;
-}
-
-/// The image at another size by nearest neighbour: no value is made up, edges and invalid pixels do
-/// not bleed. Throws argument_error if a target size is 0 or the image is empty.
-template <class T>
-[[nodiscard]] image<T> resample_nearest(view<const T> source,
-                                        std::size_t width,
-                                        std::size_t height,
-                                        nearest_rule rule = nearest_rule::centre) {
-  if (width == 0 || height == 0 || source.empty()) {
-    throw argument_error(message("raster::resample_nearest: cannot make ", width, "x", height,
-                                 " of ", source.width, "x", source.height));
-  }
-  std::vector<std::size_t> column(width);
-  for (std::size_t x = 0; x < width; ++x) column[x] = nearest_index(x, source.width, width, rule);
-  image<T> target(width, height);
-  for (std::size_t y = 0; y < height; ++y) {
-    const auto from = source.row(nearest_index(y, source.height, height, rule));
-    for (std::size_t x = 0; x < width; ++x) target(x, y) = from[column[x]];
-  }
-  return target;
-}
-
-}  // namespace aib::raster
-
-// aib/raster/draw.hpp
-
-namespace aib::raster {
-
-/// Copies an image into another at (x, y); what lies outside is cut off.
-inline void paste(color_image& onto, view<const rgb> image, std::size_t x, std::size_t y) {
-  if (x >= onto.width()) return;
-  const std::size_t width = std::min(image.width, onto.width() - x);
-  for (std::size_t row = 0; row < image.height && y + row < onto.height(); ++row)
-    std::copy_n(image.row(row).begin(), width, &onto(x, y + row));
-}
-
-/// Size of a character of draw_number with the gap behind it, at scale 1.
-inline constexpr std::size_t character_width = 4;
-inline constexpr std::size_t character_height = 5;
-
-/// Writes a number into an image at (x, y), `scale` pixels a dot. Knows the characters
-/// "0123456789.-+%"; others are blank. What lies outside is cut off.
-void draw_number(color_image& onto,
-                 std::string_view text,
-                 std::size_t x,
-                 std::size_t y,
-                 const rgb& color,
-                 std::size_t scale = 2);
-
-/// Pictures in rows of `columns`, each shrunk (nearest neighbour) to `width` pixels in the shape of
-/// the first, on white. No picture gives an empty image.
-color_image contact_sheet(std::span<const color_image> pictures,
-                          std::size_t columns,
-                          std::size_t width);
-
-namespace detail {
-
-/// Rows of three dots, the highest row in the highest bits.
-inline std::uint16_t dots_of(char c) {
-  constexpr std::string_view known = "0123456789.-+%";
-  constexpr std::array<std::uint16_t, 14> dots = {
-      0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
-      0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'001'010'010,
-      0b111'101'111'101'111, 0b111'101'111'001'111, 0b000'000'000'000'010, 0b000'000'111'000'000,
-      0b000'010'111'010'000, 0b101'001'010'100'101};
-  const std::size_t at = known.find(c);
-  return at == std::string_view::npos ? std::uint16_t{0} : dots[at];
-}
-
-}  // namespace detail
-
-inline void draw_number(color_image& onto,
-                        std::string_view text,
-                        std::size_t x,
-                        std::size_t y,
-                        const rgb& color,
-                        std::size_t scale) {
-  for (const char c : text) {
-    const unsigned dots = detail::dots_of(c);
-    for (std::size_t py = 0; py < 5 * scale; ++py) {
-      for (std::size_t px = 0; px < 3 * scale; ++px) {
-        const std::size_t bit = 14 - (3 * (py / scale) + px / scale);
-        if ((dots >> bit & 1u) && x + px < onto.width() && y + py < onto.height())
-          onto(x + px, y + py) = color;
-      }
-    }
-    x += character_width * scale;
-  }
-}
-
-inline color_image contact_sheet(std::span<const color_image> pictures,
-                                 std::size_t columns,
-                                 std::size_t width) {
-  if (pictures.empty() || columns == 0 || width == 0) return {};
-  constexpr std::size_t gap = 6;
-  const color_image& first = pictures.front();
-  const std::size_t height = std::max<std::size_t>(1, width * first.height() / first.width());
-  columns = std::min(columns, pictures.size());
-  const std::size_t rows = (pictures.size() + columns - 1) / columns;
-  color_image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {255, 255, 255});
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const color_image small = resample_nearest(pictures[i].view(), width, height);
-    paste(sheet, small.view(), gap + i % columns * (width + gap),
-          gap + i / columns * (height + gap));
-  }
-  return sheet;
-}
-
-}  // namespace aib::raster
 
 // aib/search/buffer.hpp
 
@@ -2874,172 +3142,787 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
 }  // namespace AIB_ISA
 }  // namespace aib::search
 
-// aib/search/triangle_tree.hpp
+// aib/cloud/distances.hpp
 
-namespace aib::search {
+namespace aib::cloud {
 
-/// Corners of a triangle.
-struct corners {
-  float at[3][3];  ///< [corner][axis]
-
-  corners() = default;
-  corners(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c)
-      : at{{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}} {}
-
-  template <class Scalar>
-  [[nodiscard]] Eigen::Matrix<Scalar, 3, 1> corner(int k) const {
-    return Eigen::Vector3f(at[k]).cast<Scalar>();
-  }
+/// What becomes of a distance that is not below the maximum.
+enum class maximum_rule {
+  drop,   ///< left out of all statistics but shares (DTU)
+  clamp,  ///< counts as the maximum (CloudCompare)
 };
 
-/// The part of a triangle that a point of it belongs to: its face, edge k (from corner k to the
-/// next), or corner k.
-enum class triangle_part { face, edge, corner };
-
-/// The point of a triangle that is nearest to a query.
-struct surface_point {
-  Eigen::Vector3d position;
-  triangle_part part = triangle_part::face;
-  int k = 0;  ///< which edge or corner
+struct distance_options {
+  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
+  maximum_rule rule = maximum_rule::drop;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
-/// The point of a triangle that is nearest to p. A triangle without area is treated as its edges.
-/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-[[nodiscard]] inline surface_point nearest_on_triangle(const Eigen::Vector3d& p,
-                                                       const std::array<Eigen::Vector3d, 3>& t) {
-  const Eigen::Vector3d ab = t[1] - t[0], ac = t[2] - t[0];
-  const Eigen::Vector3d ap = p - t[0], bp = p - t[1], cp = p - t[2];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return {t[0], triangle_part::corner, 0};
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return {t[1], triangle_part::corner, 1};
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return {t[2], triangle_part::corner, 2};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-    return {t[0] + d1 / (d1 - d3) * ab, triangle_part::edge, 0};
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    return {t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]), triangle_part::edge, 1};
-  }
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    return {t[0] + d2 / (d2 - d6) * ac, triangle_part::edge, 2};
-  }
-  const double sum = va + vb + vc;
-  return {t[0] + vb / sum * ab + vc / sum * ac, triangle_part::face, 0};
-}
-
-inline namespace AIB_ISA {
-
-/// The range of a triangle on one axis.
-inline std::pair<float, float> range_of(const corners& t, int axis) {
-  return {std::min({t.at[0][axis], t.at[1][axis], t.at[2][axis]}),
-          std::max({t.at[0][axis], t.at[1][axis], t.at[2][axis]})};
-}
-
-/// The triangle that is nearest to a query, and how near.
-struct nearest_triangle {
-  std::uint32_t place = 0;  ///< in the order of the tree
-  double squared = std::numeric_limits<double>::infinity();
-};
-
-/// Triangles in the order of a curve under a tree of boxes, eight to a node. Triangles must be
-/// finite and not empty.
-class triangle_tree {
+/// Distances from each point of a cloud to another thing, with their statistics.
+///
+/// Statistics throw undefined_error where no distance counts.
+class distances {
  public:
-  triangle_tree(std::span<const corners> triangles,
-                const curve& order,
-                unsigned threads = 0,
-                const control& control = {});
+  /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
+  /// brought to one origin in double first.
+  ///
+  /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
+  /// not positive.
+  distances(const cloud& from, const cloud& to, const distance_options& options = {});
 
-  [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+  /// Distances that are known: NaN for a point that had none, any value >= max_distance where it is
+  /// that far or farther.
+  explicit distances(std::vector<float> values, const distance_options& options = {});
 
-  /// Index, as given, of the triangle at a place.
-  [[nodiscard]] std::uint32_t index(std::uint32_t place) const { return index_[place]; }
+  /// One value a point of the cloud, in its order: NaN for a point that is not finite; beyond the
+  /// maximum +infinity (drop) or the maximum (clamp).
+  [[nodiscard]] std::span<const float> values() const { return values_; }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] float operator[](std::size_t i) const { return values_[i]; }
 
-  /// Corners of the triangle at a place.
-  [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t place) const {
-    const corners& t = triangles_[place];
-    return {t.corner<double>(0), t.corner<double>(1), t.corner<double>(2)};
-  }
+  [[nodiscard]] std::size_t n_dropped() const { return n_dropped_; }  ///< not finite
+  [[nodiscard]] std::size_t n_beyond() const { return n_beyond_; }    ///< not below max_distance
+  [[nodiscard]] std::size_t n_finite() const { return size() - n_dropped_; }
+  [[nodiscard]] double share_beyond() const;  ///< of the finite points
 
-  /// The nearest triangle, exact in double. `first_guess` is a place that is probably near; it
-  /// changes the time, and among equally near triangles the answer, but not the distance.
-  [[nodiscard]] nearest_triangle nearest(const Eigen::Vector3f& p, std::uint32_t first_guess) const;
+  [[nodiscard]] double mean() const;
+  [[nodiscard]] double rmse() const;
+  [[nodiscard]] double max() const;
+  [[nodiscard]] double median() const { return quantile(0.5); }
+  /// q in [0, 1], interpolated linearly.
+  [[nodiscard]] double quantile(double q) const;
+
+  /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
+  /// in the denominator. Throws argument_error if tau is above the maximum.
+  [[nodiscard]] double share_below(double tau) const;
 
  private:
-  void try_triangle(const Eigen::Vector3d& p, std::uint32_t place, nearest_triangle& best) const;
+  void apply_maximum();
+  void summarize();
+  [[nodiscard]] std::size_t n_counted() const;
+  void demand_values(const char* what) const;
 
-  buffer<corners> triangles_;
-  buffer<std::uint32_t> index_;
-  std::vector<buffer<box_node>> levels_;
+  std::vector<float> values_;
+  distance_options options_;
+  std::size_t n_dropped_ = 0;
+  std::size_t n_beyond_ = 0;
+  double sum_ = 0;
+  double sum_of_squares_ = 0;
+  double max_ = 0;
 };
 
-inline triangle_tree::triangle_tree(std::span<const corners> triangles,
-                                    const curve& order,
-                                    unsigned threads,
-                                    const control& control)
-    : triangles_(triangles.size()), index_(triangles.size()) {
-  if (threads == 0) threads = available_threads();
-  std::vector<Eigen::Vector3f> centres;
-  centres.reserve(triangles.size());
-  for (const corners& t : triangles)
-    centres.push_back(t.corner<float>(0) / 3 + t.corner<float>(1) / 3 + t.corner<float>(2) / 3);
-  const auto sorted = sort_along(centres, order, threads, control);
-  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    index_[i] = static_cast<std::uint32_t>(sorted[i] & mask);
-    triangles_[i] = triangles[index_[i]];
-  }
-  const std::span<const corners> leaves = triangles_.span();
-  levels_.push_back(boxes_above(leaves, threads, control));
-  while (levels_.back().size() > 1) {
-    const std::span<const box_node> below = levels_.back().span();
-    levels_.push_back(boxes_above(below, threads, control));
+namespace detail {
+
+inline constexpr std::size_t value_chunk = 1 << 16;
+
+inline void demand_points(const char* function, const char* which, const finite_points& p) {
+  if (p.points().empty()) {
+    throw undefined_error(message(function, ": no finite point in the ", which, " cloud (",
+                                  p.n_given(), " points, ", p.n_dropped(), " not finite)"));
   }
 }
 
-inline void triangle_tree::try_triangle(const Eigen::Vector3d& p,
-                                        std::uint32_t place,
-                                        nearest_triangle& best) const {
-  const Eigen::Vector3d offset = nearest_on_triangle(p, triangle(place)).position - p;
-  const double squared = offset.squaredNorm();
-  if (squared < best.squared) best = {place, squared};
+inline void check_maximum(const distance_options& options) {
+  if (options.max_distance && !(*options.max_distance > 0)) {
+    throw argument_error(
+        message("cloud::distances: max_distance > 0 expected, found ", *options.max_distance));
+  }
 }
 
-/// Boxes are measured in float, each operation rounded once; a bound that is larger by more than
-/// their sum of rounding errors never cuts off a nearer triangle.
-inline float bound_above(double squared) {
-  return static_cast<float>(std::min(squared * (1 + 1e-5), 3e38)) +
-         std::numeric_limits<float>::min();
+/// A float not below the square of the largest distance that counts.
+inline float squared_bound(const distance_options& options) {
+  if (!options.max_distance) return std::numeric_limits<float>::infinity();
+  const double reach = *options.max_distance * (1 + 1e-6);
+  const double largest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::min(reach * reach, largest));
 }
 
-inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
-                                               std::uint32_t first_guess) const {
-  const query q(p.x(), p.y(), p.z());
-  const Eigen::Vector3d exact = p.cast<double>();
-  nearest_triangle best;
-  try_triangle(exact, first_guess, best);
-  pending_boxes pending;
-  pending.push_root(levels_.size());
-  while (!pending.empty()) {
-    const pending_box box = pending.pop();
-    const float bound = bound_above(best.squared);
-    if (!(box.squared < bound)) continue;
-    if (box.level == pending_box::leaf) {
-      try_triangle(exact, box.index, best);
-    } else {
-      const f32x8 d = squared_distances(q.axis, q.axis, levels_[box.level][box.index]);
-      pending.push_children(box, d, less(d, f32x8::broadcast(bound)));
+/// Distances in the order of the cloud, of squares in the order of its finite points.
+inline std::vector<float> roots_in_place(const finite_points& from, std::vector<float> squared) {
+  for (float& d : squared) d = std::sqrt(d);
+  if (from.n_dropped() == 0) return squared;
+  std::vector<float> values(from.n_given(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < squared.size(); ++i) values[from.source_index(i)] = squared[i];
+  return values;
+}
+
+inline search::nearest_options search_options(const distance_options& options) {
+  return {.squared_bound = squared_bound(options),
+          .threads = options.threads,
+          .control = options.control};
+}
+
+}  // namespace detail
+
+inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
+    : options_(options) {
+  detail::check_maximum(options);
+  const finite_points a(from, to.origin);
+  const finite_points b(to, to.origin);
+  detail::demand_points("cloud::distances", "first", a);
+  detail::demand_points("cloud::distances", "second", b);
+  const search::curve order = search::common_curve(a.points(), b.points());
+  const search::box_tree queries(a.points(), order, options.threads, options.control);
+  const search::box_tree targets(b.points(), order, options.threads, options.control);
+  values_ = detail::roots_in_place(
+      a, search::nearest_squared(queries, targets, detail::search_options(options)));
+  apply_maximum();
+  summarize();
+}
+
+inline distances::distances(std::vector<float> values, const distance_options& options)
+    : values_(std::move(values)), options_(options) {
+  detail::check_maximum(options);
+  apply_maximum();
+  summarize();
+}
+
+inline void distances::apply_maximum() {
+  if (!options_.max_distance) return;
+  const bool drop = options_.rule == maximum_rule::drop;
+  const float beyond =
+      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
+  for (float& value : values_) {
+    if (static_cast<double>(value) >= *options_.max_distance) {
+      value = beyond;
+      ++n_beyond_;
     }
   }
-  return best;
 }
 
-}  // namespace AIB_ISA
-}  // namespace aib::search
+inline void distances::summarize() {
+  struct sums {
+    std::size_t dropped = 0;
+    double sum = 0, squares = 0, max = 0;
+  };
+  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
+  const auto sum_chunk = [&](const chunk& c) {
+    sums s;
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const double d = values_[i];
+      if (std::isnan(d)) ++s.dropped;
+      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
+      s.sum += d;
+      s.squares += d * d;
+      s.max = std::max(s.max, d);
+    }
+    return s;
+  };
+  const auto combine = [](sums a, const sums& b) {
+    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
+                std::max(a.max, b.max)};
+  };
+  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                                   sums{}, sum_chunk, combine);
+  n_dropped_ = total.dropped;
+  sum_ = total.sum;
+  sum_of_squares_ = total.squares;
+  max_ = total.max;
+}
+
+inline std::size_t distances::n_counted() const {
+  const bool drop = options_.max_distance && options_.rule == maximum_rule::drop;
+  return n_finite() - (drop ? n_beyond_ : 0);
+}
+
+inline void distances::demand_values(const char* what) const {
+  if (n_counted() > 0) return;
+  throw undefined_error(message("cloud::distances: no distance to take the ", what, " of (", size(),
+                                " points, ", n_dropped_, " not finite, ", n_beyond_,
+                                " beyond max_distance)"));
+}
+
+inline double distances::share_beyond() const {
+  if (n_finite() == 0) demand_values("share");
+  return static_cast<double>(n_beyond_) / static_cast<double>(n_finite());
+}
+
+inline double distances::mean() const {
+  demand_values("mean");
+  return sum_ / static_cast<double>(n_counted());
+}
+
+inline double distances::rmse() const {
+  demand_values("root mean square");
+  return std::sqrt(sum_of_squares_ / static_cast<double>(n_counted()));
+}
+
+inline double distances::max() const {
+  demand_values("maximum");
+  return max_;
+}
+
+inline double distances::quantile(double q) const {
+  demand_values("quantile");
+  std::vector<float> counted;
+  counted.reserve(n_counted());
+  const bool all = n_counted() == n_finite();
+  std::copy_if(values_.begin(), values_.end(), std::back_inserter(counted),
+               [&](float d) { return !std::isnan(d) && (all || !std::isinf(d)); });
+  return stats::quantile_in_place<float>(counted, q);
+}
+
+inline double distances::share_below(double tau) const {
+  if (n_finite() == 0) demand_values("share");
+  if (options_.max_distance && tau > *options_.max_distance) {
+    throw argument_error(
+        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
+  }
+  const auto count_chunk = [&](const chunk& c) {
+    std::size_t n = 0;
+    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
+    return n;
+  };
+  const std::size_t below =
+      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
+                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
+  return static_cast<double>(below) / static_cast<double>(n_finite());
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/compare.hpp
+
+namespace aib::cloud {
+
+struct compare_options {
+  std::vector<double> tau = {};             ///< thresholds of precision, recall and F-score
+  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
+  maximum_rule rule = maximum_rule::drop;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Scores at one threshold.
+/// Source: Knapitsch et al., "Tanks and Temples", SIGGRAPH 2017, section 4.
+struct threshold_scores {
+  double tau;
+  double precision;  ///< share of the estimate strictly below tau of the reference
+  double recall;     ///< share of the reference strictly below tau of the estimate
+  double f_score;    ///< harmonic mean of both; 0 where both are 0
+};
+
+/// How an estimated cloud differs from a reference. Lengths in the unit of the clouds.
+struct comparison {
+  double accuracy;      ///< mean distance from the estimate to the reference
+  double completeness;  ///< mean distance from the reference to the estimate
+  double chamfer;       ///< sum of both
+  double chamfer_mean;  ///< half of it
+  double f1_distance;   ///< harmonic mean of both, a length; 0 where both are 0
+  double accuracy_median;
+  double completeness_median;
+  double accuracy_rmse;
+  double completeness_rmse;
+  double hausdorff;                      ///< the larger of both directed maxima
+  std::vector<threshold_scores> scores;  ///< one a threshold, in the order asked for
+  std::size_t n_estimate;                ///< points that were compared
+  std::size_t n_reference;
+  std::size_t n_dropped;    ///< points of both clouds that are not finite
+  double estimate_beyond;   ///< share of the estimate not below max_distance
+  double reference_beyond;  ///< share of the reference not below max_distance
+};
+
+/// Distances in both directions, each cloud sorted and indexed once.
+struct two_way_distances {
+  distances to_reference;  ///< of the points of the estimate
+  distances to_estimate;   ///< of the points of the reference
+};
+
+namespace detail {
+
+inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
+
+}  // namespace detail
+
+/// Distances from the estimate to the reference and back.
+/// Throws undefined_error if either cloud has no finite point.
+[[nodiscard]] inline two_way_distances distances_both_ways(const cloud& estimate,
+                                                           const cloud& reference,
+                                                           const distance_options& options = {}) {
+  detail::check_maximum(options);
+  const finite_points e(estimate, reference.origin);
+  const finite_points r(reference, reference.origin);
+  detail::demand_points("cloud::compare", "estimated", e);
+  detail::demand_points("cloud::compare", "reference", r);
+  const search::curve order = search::common_curve(e.points(), r.points());
+  const search::box_tree e_tree(e.points(), order, options.threads, options.control);
+  const search::box_tree r_tree(r.points(), order, options.threads, options.control);
+  const auto search = detail::search_options(options);
+  return {distances(detail::roots_in_place(e, search::nearest_squared(e_tree, r_tree, search)),
+                    options),
+          distances(detail::roots_in_place(r, search::nearest_squared(r_tree, e_tree, search)),
+                    options)};
+}
+
+/// The scores of distances in both directions, wherever they come from.
+[[nodiscard]] inline comparison score(const distances& to_reference,
+                                      const distances& to_estimate,
+                                      std::span<const double> tau = {}) {
+  const double accuracy = to_reference.mean();
+  const double completeness = to_estimate.mean();
+  comparison c{.accuracy = accuracy,
+               .completeness = completeness,
+               .chamfer = accuracy + completeness,
+               .chamfer_mean = (accuracy + completeness) / 2,
+               .f1_distance = detail::harmonic_mean(accuracy, completeness),
+               .accuracy_median = to_reference.median(),
+               .completeness_median = to_estimate.median(),
+               .accuracy_rmse = to_reference.rmse(),
+               .completeness_rmse = to_estimate.rmse(),
+               .hausdorff = std::max(to_reference.max(), to_estimate.max()),
+               .scores = {},
+               .n_estimate = to_reference.n_finite(),
+               .n_reference = to_estimate.n_finite(),
+               .n_dropped = to_reference.n_dropped() + to_estimate.n_dropped(),
+               .estimate_beyond = to_reference.share_beyond(),
+               .reference_beyond = to_estimate.share_beyond()};
+  for (const double t : tau) {
+    const double precision = to_reference.share_below(t);
+    const double recall = to_estimate.share_below(t);
+    c.scores.push_back({t, precision, recall, detail::harmonic_mean(precision, recall)});
+  }
+  return c;
+}
+
+/// Compares an estimated cloud with a reference: every metric of point clouds from one search.
+///
+/// Nothing is aligned. A reference sampled from a surface puts a floor under accuracy, see
+/// sample::mesh; mesh::compare has none.
+/// Throws undefined_error if either cloud has no finite point, argument_error if a tau is above
+/// max_distance.
+[[nodiscard]] inline comparison compare(const cloud& estimate,
+                                        const cloud& reference,
+                                        const compare_options& options = {}) {
+  const auto both = distances_both_ways(estimate, reference,
+                                        {.max_distance = options.max_distance,
+                                         .rule = options.rule,
+                                         .threads = options.threads,
+                                         .control = options.control});
+  return score(both.to_reference, both.to_estimate, options.tau);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/select.hpp
+
+namespace aib::cloud {
+
+namespace detail {
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& all, std::span<const std::size_t> index) {
+  std::vector<T> some;
+  if (all.empty()) return some;
+  some.reserve(index.size());
+  for (const std::size_t i : index) some.push_back(all[i]);
+  return some;
+}
+
+}  // namespace detail
+
+/// The points of some indices, in their order, with all that belongs to them.
+[[nodiscard]] inline cloud select(const cloud& c, std::span<const std::size_t> index) {
+  return {.origin = c.origin,
+          .points = detail::picked(c.points, index),
+          .normals = detail::picked(c.normals, index),
+          .colors = detail::picked(c.colors, index),
+          .labels = detail::picked(c.labels, index),
+          .warnings = c.warnings};
+}
+
+/// The points of whose index `keep(i)` is true.
+template <class Keep>
+[[nodiscard]] cloud select_where(const cloud& c, Keep&& keep) {
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (keep(i)) index.push_back(i);
+  }
+  return select(c, index);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/crop.hpp
+
+namespace aib::cloud {
+
+/// A part of space.
+template <class Volume>
+concept volume = requires(const Volume& v, const Eigen::Vector3d& p) {
+  { v.contains(p) } -> std::same_as<bool>;
+};
+
+/// A box in any orientation, its faces included.
+struct oriented_box {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d world_from_box = Eigen::Matrix3d::Identity();  ///< rotation
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();                ///< along the box's own axes
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d from_centre = p - centre;
+    const Eigen::Vector3d in_box = world_from_box.transpose() * from_centre;
+    return (2 * in_box.array().abs() <= size.array()).all();
+  }
+};
+
+/// A prism over a polygon: the crop volume of Tanks and Temples, Open3D's SelectionPolygonVolume.
+///
+/// A point is inside where its coordinate on `axis` is in [low, high] and where the polygon, seen
+/// along that axis, lies around it by the even-odd rule.
+struct polygon_volume {
+  int axis = 2;  ///< 0, 1 or 2: the polygon is seen along it
+  double low = 0;
+  double high = 0;
+  std::vector<Eigen::Vector3d> polygon = {};  ///< at least three corners; `axis` plays no part
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    if (!(p[axis] >= low && p[axis] <= high)) return false;
+    const int u = axis == 0 ? 1 : 0;
+    const int v = axis == 2 ? 1 : 2;
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Eigen::Vector3d& a = polygon[i];
+      const Eigen::Vector3d& b = polygon[(i + 1) % polygon.size()];
+      if ((a[v] < p[v]) == (b[v] < p[v])) continue;
+      if (a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u]) < p[u]) inside = !inside;
+    }
+    return inside;
+  }
+};
+
+/// The points of a cloud that lie in a volume. Points that are not finite lie in none.
+template <volume Volume>
+[[nodiscard]] cloud crop(const cloud& c, const Volume& volume) {
+  return select_where(c, [&](std::size_t i) { return volume.contains(c.position(i)); });
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/neighbours.hpp
+
+namespace aib::cloud {
+
+/// Another point and how far it is.
+struct neighbour {
+  std::size_t index;  ///< in the cloud
+  double distance;
+};
+
+/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
+/// Borrows nothing. For the one nearest point of millions see cloud::distances.
+class neighbours {
+ public:
+  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  neighbours(const neighbours&) = delete;
+  neighbours& operator=(const neighbours&) = delete;
+
+  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
+  /// finds itself first.
+  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
+    k = std::min(k, points_.position.size());
+    std::vector<std::size_t> index(k);
+    std::vector<double> squared(k);
+    const Eigen::Vector3d local = p - points_.origin;
+    const std::size_t n =
+        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
+    std::vector<neighbour> found;
+    for (std::size_t i = 0; i < n; ++i) {
+      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
+    }
+    return found;
+  }
+
+  /// How many points lie nearer than `radius`.
+  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
+    const Eigen::Vector3d local = p - points_.origin;
+    counter inside{radius * radius};
+    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
+    return inside.n;
+  }
+
+ private:
+  /// A result set, which is the same in every version of nanoflann.
+  struct counter {
+    double squared_radius;
+    std::size_t n = 0;
+
+    bool addPoint(double squared, std::size_t) {
+      n += squared < squared_radius ? 1 : 0;
+      return true;
+    }
+    [[nodiscard]] double worstDist() const { return squared_radius; }
+    [[nodiscard]] std::size_t size() const { return n; }
+    [[nodiscard]] bool full() const { return true; }
+  };
+
+  struct finite_positions {
+    Eigen::Vector3d origin;
+    std::vector<Eigen::Vector3d> position;
+    std::vector<std::size_t> source;
+
+    explicit finite_positions(const cloud& c) : origin(c.origin) {
+      for (std::size_t i = 0; i < c.size(); ++i) {
+        if (!is_finite(c.points[i])) continue;
+        position.push_back(c.points[i].cast<double>());
+        source.push_back(i);
+      }
+    }
+
+    // The interface that nanoflann asks for.
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return position[i][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
+
+  finite_positions points_;
+  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+};
+
+}  // namespace aib::cloud
+
+// aib/cloud/normals.hpp
+
+namespace aib::cloud {
+
+struct normal_options {
+  std::size_t neighbours = 30;  ///< the point itself included
+  unsigned threads = 0;         ///< 0: all
+};
+
+/// The cloud with a normal for each point: the direction in which its nearest neighbours spread
+/// least. The sign is arbitrary. A point that is not finite, or has fewer than two others, gets
+/// (0, 0, 1).
+/// Source: Hoppe et al., SIGGRAPH 1992, section 3.2.
+[[nodiscard]] inline cloud with_normals(const cloud& c, const normal_options& options = {}) {
+  const neighbours search(c);
+  cloud result = c;
+  result.normals.assign(c.size(), Eigen::Vector3f(0, 0, 1));
+  for_each_chunk(c.size(), 1024, options.threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (!is_finite(c.points[i])) continue;
+      const auto found = search.nearest(c.position(i), options.neighbours);
+      if (found.size() < 3) continue;
+      Eigen::Vector3d mean(0, 0, 0);
+      for (const neighbour& n : found) mean += c.points[n.index].cast<double>();
+      mean /= static_cast<double>(found.size());
+      Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+      for (const neighbour& n : found) {
+        const Eigen::Vector3d d = c.points[n.index].cast<double>() - mean;
+        covariance += d * d.transpose();
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+      const Eigen::Vector3d least = solver.eigenvectors().col(0);
+      result.normals[i] = least.cast<float>();
+    }
+  });
+  return result;
+}
+
+/// Agreement of normals: |cosine| of the angle to the normal of the nearest point of the other
+/// cloud.
+struct normal_consistency_result {
+  double estimate_mean;  ///< over the estimate ("NC1" of CUT3R)
+  double estimate_median;
+  double reference_mean;  ///< over the reference ("NC2")
+  double reference_median;
+};
+
+namespace detail {
+
+inline std::vector<double> normal_cosines(const cloud& from, const cloud& to, unsigned threads) {
+  const neighbours search(to);
+  std::vector<double> cosine(from.size(), std::numeric_limits<double>::quiet_NaN());
+  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (!is_finite(from.points[i])) continue;
+      const auto found = search.nearest(from.position(i), 1);
+      if (found.empty()) continue;
+      const Eigen::Vector3d a = from.normals[i].cast<double>();
+      const Eigen::Vector3d b = to.normals[found[0].index].cast<double>();
+      cosine[i] = std::abs(a.dot(b));
+    }
+  });
+  std::erase_if(cosine, [](double c) { return std::isnan(c); });
+  if (cosine.empty()) throw undefined_error("cloud::normal_consistency: no pair of finite points");
+  return cosine;
+}
+
+inline double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace detail
+
+/// How well the normals of two clouds agree, over each cloud. Signs play no part.
+/// Throws argument_error if a cloud has no normals, undefined_error if one has no finite point.
+/// Source: Wang et al., "Continuous 3D perception model with persistent state" (CUT3R), CVPR 2025.
+[[nodiscard]] inline normal_consistency_result normal_consistency(const cloud& estimate,
+                                                                  const cloud& reference,
+                                                                  unsigned threads = 0) {
+  for (const cloud* c : {&estimate, &reference}) {
+    if (c->normals.size() != c->size()) {
+      throw argument_error("cloud::normal_consistency: clouds with normals expected");
+    }
+  }
+  const auto e = detail::normal_cosines(estimate, reference, threads);
+  const auto r = detail::normal_cosines(reference, estimate, threads);
+  const std::span<const double> es(e), rs(r);
+  return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/outliers.hpp
+
+namespace aib::cloud {
+
+struct statistical_options {
+  std::size_t neighbours = 20;  ///< the point itself included
+  double ratio = 2;             ///< standard deviations above the mean that are kept
+  unsigned threads = 0;         ///< 0: all
+};
+
+struct radius_options {
+  double radius = 0;
+  std::size_t neighbours = 2;  ///< more points than this, the point itself included, are kept
+  unsigned threads = 0;        ///< 0: all
+};
+
+namespace detail {
+
+/// A number for each point, of NaN where the point is not finite.
+template <class Measure>
+std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& measure) {
+  std::vector<double> values(c.size(), std::numeric_limits<double>::quiet_NaN());
+  for_each_chunk(c.size(), 1024, threads, {}, [&](const chunk& part) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (is_finite(c.points[i])) values[i] = measure(c.position(i));
+    }
+  });
+  return values;
+}
+
+}  // namespace detail
+
+/// The points whose mean distance to their nearest neighbours is not far above that of all: below
+/// mean + ratio * standard deviation (ddof 1). Duplicates, whose mean distance is 0, go as well.
+/// Source: Rusu et al., RAS 2008; the rule is Open3D's remove_statistical_outlier.
+[[nodiscard]] inline cloud without_statistical_outliers(const cloud& c,
+                                                        const statistical_options& options = {}) {
+  if (options.neighbours == 0 || !(options.ratio > 0)) {
+    throw argument_error("cloud::without_statistical_outliers: neighbours > 0, ratio > 0 expected");
+  }
+  const neighbours search(c);
+  const auto spread = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
+    const auto found = search.nearest(p, options.neighbours);
+    double sum = 0;
+    for (const neighbour& n : found) sum += n.distance;
+    return sum / static_cast<double>(found.size());
+  });
+  double sum = 0, squares = 0, n = 0;
+  for (const double s : spread) {
+    if (s > 0) sum += s, ++n;
+  }
+  const double mean = n > 0 ? sum / n : 0;
+  for (const double s : spread) {
+    if (s > 0) squares += (s - mean) * (s - mean);
+  }
+  const double limit = mean + options.ratio * (n > 1 ? std::sqrt(squares / (n - 1)) : 0);
+  return select_where(c, [&](std::size_t i) { return spread[i] > 0 && spread[i] < limit; });
+}
+
+/// The points that have more than so many points, themselves included, nearer than a radius.
+[[nodiscard]] inline cloud without_radius_outliers(const cloud& c, const radius_options& options) {
+  if (!(options.radius > 0)) {
+    throw argument_error(
+        message("cloud::without_radius_outliers: radius > 0 expected, found ", options.radius));
+  }
+  const neighbours search(c);
+  const auto count = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
+    return static_cast<double>(search.count_within(p, options.radius));
+  });
+  const auto least = static_cast<double>(options.neighbours);
+  return select_where(c, [&](std::size_t i) { return count[i] > least; });
+}
+
+/// n points chosen at random, each subset equally likely, in their order; all where there are
+/// fewer.
+[[nodiscard]] inline cloud random_subset(const cloud& c, std::size_t n, std::uint64_t seed = 1) {
+  std::vector<std::size_t> index(c.size());
+  std::iota(index.begin(), index.end(), std::size_t{0});
+  n = std::min(n, index.size());
+  random_engine random(seed);
+  for (std::size_t i = 0; i < n; ++i)
+    std::swap(index[i], index[i + random.below(index.size() - i)]);
+  index.resize(n);
+  std::sort(index.begin(), index.end());
+  return select(c, index);
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/transform.hpp
+
+namespace aib::cloud {
+
+/// The cloud in frame b. Points are moved in double and counted from their new natural origin,
+/// normals are turned.
+[[nodiscard]] inline cloud operator*(const math::sim3& b_from_a, const cloud& in_a) {
+  placed_points placed =
+      place(in_a.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
+  cloud in_b = in_a;
+  in_b.origin = placed.origin;
+  in_b.points = std::move(placed.points);
+  const Eigen::Matrix3f rotation = b_from_a.rotation.cast<float>();
+  for (Eigen::Vector3f& normal : in_b.normals) normal = (rotation * normal).eval();
+  return in_b;
+}
+
+[[nodiscard]] inline cloud operator*(const math::rigid3& b_from_a, const cloud& in_a) {
+  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
+}
+
+}  // namespace aib::cloud
+
+// aib/raster/view.hpp
+
+namespace aib::raster {
+
+/// A rectangle of pixels that somebody else owns. Row-major, row 0 on top.
+template <class T>
+struct view {
+  T* data = nullptr;
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t stride = 0;  ///< elements from one row to the next
+
+  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) const { return data[y * stride + x]; }
+  [[nodiscard]] std::span<T> row(std::size_t y) const { return {data + y * stride, width}; }
+  [[nodiscard]] std::size_t size() const { return width * height; }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+
+  operator view<const T>() const requires(!std::is_const_v<T>) {
+    return {data, width, height, stride};
+  }
+};
+
+/// The part of a view that begins at (x, y). The caller keeps it inside.
+template <class T>
+[[nodiscard]] view<T> part(
+    view<T> whole, std::size_t x, std::size_t y, std::size_t width, std::size_t height) {
+  return {whole.data + y * whole.stride + x, width, height, whole.stride};
+}
+
+}  // namespace aib::raster
 
 // aib/depth/crop.hpp
 
@@ -3085,6 +3968,50 @@ template <class T>
 
 }  // namespace aib::depth
 
+// aib/raster/image.hpp
+
+namespace aib::raster {
+
+/// A rectangle of pixels, owned, rows without gaps.
+template <class T>
+class image {
+ public:
+  image() = default;
+  image(std::size_t width, std::size_t height, T value = {})
+      : width_(width), height_(height), pixels_(width * height, value) {}
+
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t height() const { return height_; }
+  [[nodiscard]] std::size_t size() const { return pixels_.size(); }
+  [[nodiscard]] bool empty() const { return pixels_.empty(); }
+
+  [[nodiscard]] T* data() { return pixels_.data(); }
+  [[nodiscard]] const T* data() const { return pixels_.data(); }
+  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) { return pixels_[y * width_ + x]; }
+  [[nodiscard]] const T& operator()(std::size_t x, std::size_t y) const {
+    return pixels_[y * width_ + x];
+  }
+
+  [[nodiscard]] auto begin() { return pixels_.begin(); }
+  [[nodiscard]] auto end() { return pixels_.end(); }
+  [[nodiscard]] auto begin() const { return pixels_.begin(); }
+  [[nodiscard]] auto end() const { return pixels_.end(); }
+
+  [[nodiscard]] raster::view<T> view() { return {data(), width_, height_, width_}; }
+  [[nodiscard]] raster::view<const T> view() const { return {data(), width_, height_, width_}; }
+  operator raster::view<T>() { return view(); }
+  operator raster::view<const T>() const { return view(); }
+
+  friend bool operator==(const image&, const image&) = default;
+
+ private:
+  std::size_t width_ = 0;
+  std::size_t height_ = 0;
+  std::vector<T> pixels_;
+};
+
+}  // namespace aib::raster
+
 // aib/depth/depth_map.hpp
 
 namespace aib::depth {
@@ -3106,6 +4033,121 @@ template <class Scalar>
 }
 
 }  // namespace aib::depth
+
+// aib/math/log_ratio.hpp
+
+namespace aib::math {
+
+inline namespace AIB_ISA {
+
+/// ln(a / b) in four lanes, of positive, finite, normal doubles: within 3e-16 of the largest of 1
+/// and the result. The ratio never overflows; equal numbers give exactly 0; the same bits on every
+/// machine.
+///
+/// ln(a / b) = 2 atanh((a - b) / (a + b)), taken on the mantissas by its Taylor series.
+inline f64x4 log_ratio(f64x4 a, f64x4 b) {
+  const f64x4 zero = f64x4::broadcast(0), one = f64x4::broadcast(1);
+  const f64x4 half = f64x4::broadcast(0.5), root = f64x4::broadcast(std::numbers::sqrt2);
+
+  // The larger mantissa is halved where the ratio leaves [1 / sqrt 2, sqrt 2].
+  f64x4 ma = mantissa(a), mb = mantissa(b);
+  const f64x4 halve_a = choose(root * mb, ma, one, zero);
+  const f64x4 halve_b = choose(root * ma, mb, one, zero);
+  ma = ma - half * ma * halve_a;
+  mb = mb - half * mb * halve_b;
+  const f64x4 e = exponent(a) - exponent(b) + (halve_a - halve_b);
+
+  // |s| <= 0.1716: the first term left out is below 3e-17 of the sum.
+  const f64x4 s = (ma - mb) / (ma + mb);
+  const f64x4 z = s * s;
+  const auto term = [&](f64x4 higher, double coefficient) {
+    return higher * z + f64x4::broadcast(coefficient);
+  };
+  f64x4 series = term(f64x4::broadcast(1.0 / 19), 1.0 / 17);
+  series = term(term(series, 1.0 / 15), 1.0 / 13);
+  series = term(term(series, 1.0 / 11), 1.0 / 9);
+  series = term(term(series, 1.0 / 7), 1.0 / 5);
+  series = term(series, 1.0 / 3);
+  const f64x4 twice = s + s;
+  // ln 2 in two parts: the first has few enough bits for e * ln2_high to be exact.
+  const f64x4 ln2_high = f64x4::broadcast(0x1.62e42fefa3p-1);
+  const f64x4 ln2_low = f64x4::broadcast(0x1.3de6af278ece6p-42);
+  return e * ln2_high + (twice + twice * (z * series) + e * ln2_low);
+}
+
+/// The same of two numbers.
+inline double log_ratio(double a, double b) {
+  double result[4];
+  log_ratio(f64x4::broadcast(a), f64x4::broadcast(b)).store(result);
+  return result[0];
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::math
+
+// aib/stats/moments.hpp
+
+namespace aib::stats {
+
+/// Count, mean, variance and range of a stream of numbers, mergeable. Deviations are summed about a
+/// running mean, so that a small spread about a large mean is kept. Source: Chan, Golub, LeVeque,
+/// "Updating formulae and a pairwise algorithm for computing sample variances", 1979.
+class moments {
+ public:
+  /// The moments of values that were summed elsewhere: `squares` is the sum of squared deviations
+  /// from `mean`. The range is not known and stays empty.
+  [[nodiscard]] static moments from(std::uint64_t count, double mean, double squares) {
+    moments m;
+    m.count_ = count;
+    m.mean_ = mean;
+    m.squares_ = squares;
+    return m;
+  }
+
+  void add(double value) {
+    ++count_;
+    const double delta = value - mean_;
+    mean_ += delta / static_cast<double>(count_);
+    squares_ += delta * (value - mean_);
+    min_ = std::min(min_, value);
+    max_ = std::max(max_, value);
+  }
+
+  moments& operator+=(const moments& other) {
+    if (other.count_ == 0) return *this;
+    if (count_ == 0) return *this = other;
+    const auto n = static_cast<double>(count_);
+    const auto m = static_cast<double>(other.count_);
+    const double delta = other.mean_ - mean_;
+    mean_ += delta * (m / (n + m));
+    squares_ += other.squares_ + delta * delta * (n * m / (n + m));
+    count_ += other.count_;
+    min_ = std::min(min_, other.min_);
+    max_ = std::max(max_, other.max_);
+    return *this;
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] double mean() const { return mean_; }  ///< 0 of nothing
+  [[nodiscard]] double sum() const { return mean_ * static_cast<double>(count_); }
+  [[nodiscard]] double variance() const {  ///< population (ddof 0)
+    return count_ ? squares_ / static_cast<double>(count_) : 0;
+  }
+  [[nodiscard]] double deviation() const { return std::sqrt(variance()); }  ///< population
+  [[nodiscard]] double mean_square() const { return variance() + mean_ * mean_; }
+  [[nodiscard]] double min() const { return min_; }  ///< +inf of nothing
+  [[nodiscard]] double max() const { return max_; }  ///< -inf of nothing
+
+ private:
+  std::uint64_t count_ = 0;
+  double mean_ = 0;
+  double squares_ = 0;
+  double min_ = std::numeric_limits<double>::infinity();
+  double max_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace aib::stats
 
 // aib/depth/error_sums.hpp
 
@@ -3945,6 +4987,250 @@ inline std::vector<std::size_t> worst_first(const std::vector<frame_record>& fra
 
 }  // namespace aib::depth
 
+// aib/raster/color.hpp
+
+namespace aib::raster {
+
+/// Red, green, blue, 8 bits each, sRGB as in PNG and JPEG files.
+using rgb = std::array<std::uint8_t, 3>;
+
+using color_image = image<rgb>;
+
+/// A whole number a pixel: classes, or a mask where 0 is outside.
+using label_image = image<std::uint16_t>;
+
+/// 1 where the label is not 0.
+[[nodiscard]] inline image<std::uint8_t> mask_of(const label_image& labels) {
+  image<std::uint8_t> mask(labels.width(), labels.height());
+  for (std::size_t i = 0; i < labels.size(); ++i) mask.data()[i] = labels.data()[i] != 0;
+  return mask;
+}
+
+}  // namespace aib::raster
+
+// aib/raster/colormap.hpp
+
+namespace aib::raster {
+
+/// A colour whose distances are those that people see.
+/// Source: Ottosson, "A perceptual color space for image processing", 2020.
+struct oklab {
+  double lightness;  ///< 0 black, 1 white
+  double a;          ///< green to red
+  double b;          ///< blue to yellow
+};
+
+[[nodiscard]] oklab to_oklab(const rgb& color);
+
+/// Colours outside of sRGB are cut channel by channel.
+[[nodiscard]] rgb to_rgb(const oklab& color);
+
+/// The colour at t in [0, 1] from dark blue to light yellow, in equal steps to the eye; readable
+/// with red-green blindness and in print. t is clamped, NaN is 0.
+[[nodiscard]] rgb sequential_color(double t);
+
+/// The colour at t in [-1, 1]: blue, light grey at 0, red; equal steps to the eye on both sides.
+/// t is clamped, NaN is 0.
+[[nodiscard]] rgb diverging_color(double t);
+
+namespace detail {
+
+inline double to_linear(std::uint8_t channel) {
+  const double c = channel / 255.0;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+inline std::uint8_t from_linear(double c) {
+  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
+}
+
+inline oklab mix(const oklab& from, const oklab& to, double t) {
+  const auto between = [t](double x, double y) { return x + (y - x) * t; };
+  return {between(from.lightness, to.lightness), between(from.a, to.a), between(from.b, to.b)};
+}
+
+inline constexpr std::size_t color_steps = 256;
+
+/// Colours of t = 0, 1/255, ... 1 on the straight line between two colours.
+inline std::array<rgb, color_steps> color_table(const rgb& from, const rgb& to) {
+  std::array<rgb, color_steps> table;
+  const oklab first = to_oklab(from), last = to_oklab(to);
+  for (std::size_t i = 0; i < color_steps; ++i)
+    table[i] = to_rgb(mix(first, last, static_cast<double>(i) / (color_steps - 1)));
+  return table;
+}
+
+inline const rgb& at(const std::array<rgb, color_steps>& table, double t) {
+  const double place = t > 0 ? std::min(t, 1.0) * (color_steps - 1) : 0;
+  return table[static_cast<std::size_t>(place + 0.5)];
+}
+
+}  // namespace detail
+
+inline oklab to_oklab(const rgb& color) {
+  const double r = detail::to_linear(color[0]);
+  const double g = detail::to_linear(color[1]);
+  const double b = detail::to_linear(color[2]);
+  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+inline rgb to_rgb(const oklab& c) {
+  const auto cube = [](double x) { return x * x * x; };
+  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
+  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
+  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
+  return {detail::from_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          detail::from_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          detail::from_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+inline rgb sequential_color(double t) {
+  static const auto table = detail::color_table({0, 32, 96}, {255, 233, 69});
+  return detail::at(table, t);
+}
+
+inline rgb diverging_color(double t) {
+  static const auto below = detail::color_table({238, 238, 238}, {20, 70, 170});
+  static const auto above = detail::color_table({238, 238, 238}, {170, 30, 40});
+  return t < 0 ? detail::at(below, -t) : detail::at(above, t);
+}
+
+}  // namespace aib::raster
+
+// aib/raster/downsample.hpp
+
+namespace aib::raster {
+
+/// Which source pixel a target pixel takes.
+enum class nearest_rule {
+  centre,  ///< under the target's centre: ((2i + 1) N) div 2n
+  floor,   ///< floor(i N / n), OpenCV's INTER_NEAREST
+};
+
+/// Source index of target index i when N samples become n. Integer arithmetic: ties never depend on
+/// rounding.
+[[nodiscard]] constexpr std::size_t nearest_index(std::size_t i,
+                                                  std::size_t N,
+                                                  std::size_t n,
+                                                  nearest_rule rule) {
+  return rule == nearest_rule::centre ? ((2 * i + 1) * N) / (2 * n) : (i * N) / n;
+}
+
+/// The image at another size by nearest neighbour: no value is made up, edges and invalid pixels do
+/// not bleed. Throws argument_error if a target size is 0 or the image is empty.
+template <class T>
+[[nodiscard]] image<T> resample_nearest(view<const T> source,
+                                        std::size_t width,
+                                        std::size_t height,
+                                        nearest_rule rule = nearest_rule::centre) {
+  if (width == 0 || height == 0 || source.empty()) {
+    throw argument_error(message("raster::resample_nearest: cannot make ", width, "x", height,
+                                 " of ", source.width, "x", source.height));
+  }
+  std::vector<std::size_t> column(width);
+  for (std::size_t x = 0; x < width; ++x) column[x] = nearest_index(x, source.width, width, rule);
+  image<T> target(width, height);
+  for (std::size_t y = 0; y < height; ++y) {
+    const auto from = source.row(nearest_index(y, source.height, height, rule));
+    for (std::size_t x = 0; x < width; ++x) target(x, y) = from[column[x]];
+  }
+  return target;
+}
+
+}  // namespace aib::raster
+
+// aib/raster/draw.hpp
+
+namespace aib::raster {
+
+/// Copies an image into another at (x, y); what lies outside is cut off.
+inline void paste(color_image& onto, view<const rgb> image, std::size_t x, std::size_t y) {
+  if (x >= onto.width()) return;
+  const std::size_t width = std::min(image.width, onto.width() - x);
+  for (std::size_t row = 0; row < image.height && y + row < onto.height(); ++row)
+    std::copy_n(image.row(row).begin(), width, &onto(x, y + row));
+}
+
+/// Size of a character of draw_number with the gap behind it, at scale 1.
+inline constexpr std::size_t character_width = 4;
+inline constexpr std::size_t character_height = 5;
+
+/// Writes a number into an image at (x, y), `scale` pixels a dot. Knows the characters
+/// "0123456789.-+%"; others are blank. What lies outside is cut off.
+void draw_number(color_image& onto,
+                 std::string_view text,
+                 std::size_t x,
+                 std::size_t y,
+                 const rgb& color,
+                 std::size_t scale = 2);
+
+/// Pictures in rows of `columns`, each shrunk (nearest neighbour) to `width` pixels in the shape of
+/// the first, on white. No picture gives an empty image.
+color_image contact_sheet(std::span<const color_image> pictures,
+                          std::size_t columns,
+                          std::size_t width);
+
+namespace detail {
+
+/// Rows of three dots, the highest row in the highest bits.
+inline std::uint16_t dots_of(char c) {
+  constexpr std::string_view known = "0123456789.-+%";
+  constexpr std::array<std::uint16_t, 14> dots = {
+      0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
+      0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'001'010'010,
+      0b111'101'111'101'111, 0b111'101'111'001'111, 0b000'000'000'000'010, 0b000'000'111'000'000,
+      0b000'010'111'010'000, 0b101'001'010'100'101};
+  const std::size_t at = known.find(c);
+  return at == std::string_view::npos ? std::uint16_t{0} : dots[at];
+}
+
+}  // namespace detail
+
+inline void draw_number(color_image& onto,
+                        std::string_view text,
+                        std::size_t x,
+                        std::size_t y,
+                        const rgb& color,
+                        std::size_t scale) {
+  for (const char c : text) {
+    const unsigned dots = detail::dots_of(c);
+    for (std::size_t py = 0; py < 5 * scale; ++py) {
+      for (std::size_t px = 0; px < 3 * scale; ++px) {
+        const std::size_t bit = 14 - (3 * (py / scale) + px / scale);
+        if ((dots >> bit & 1u) && x + px < onto.width() && y + py < onto.height())
+          onto(x + px, y + py) = color;
+      }
+    }
+    x += character_width * scale;
+  }
+}
+
+inline color_image contact_sheet(std::span<const color_image> pictures,
+                                 std::size_t columns,
+                                 std::size_t width) {
+  if (pictures.empty() || columns == 0 || width == 0) return {};
+  constexpr std::size_t gap = 6;
+  const color_image& first = pictures.front();
+  const std::size_t height = std::max<std::size_t>(1, width * first.height() / first.width());
+  columns = std::min(columns, pictures.size());
+  const std::size_t rows = (pictures.size() + columns - 1) / columns;
+  color_image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {255, 255, 255});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const color_image small = resample_nearest(pictures[i].view(), width, height);
+    paste(sheet, small.view(), gap + i % columns * (width + gap),
+          gap + i / columns * (height + gap));
+  }
+  return sheet;
+}
+
+}  // namespace aib::raster
+
 // aib/depth/error_image.hpp
 
 namespace aib::depth {
@@ -4156,4756 +5442,6 @@ enum class preset { paper, kitti, monodepth2, cut3r, pi3 };
 }
 
 }  // namespace aib::depth
-
-// aib/pose/angle_bins.hpp
-
-namespace aib::pose {
-
-/// Bins of angles between ascending edges in degrees: bin k holds edge[k - 1] <= angle < edge[k].
-class angle_bins {
- public:
-  /// Sorts the edges and drops repeated ones. Throws argument_error unless each is in (0, 360].
-  explicit angle_bins(std::vector<double> edges_deg) : edges_deg_(std::move(edges_deg)) {
-    for (const double e : edges_deg_) {
-      if (e > 0 && e <= 360) continue;
-      throw argument_error(message("angle_bins: edges in (0, 360] degrees expected, found ", e));
-    }
-    std::sort(edges_deg_.begin(), edges_deg_.end());
-    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end()), edges_deg_.end());
-  }
-
-  [[nodiscard]] std::size_t size() const { return edges_deg_.size() + 1; }
-  [[nodiscard]] const std::vector<double>& edges_deg() const { return edges_deg_; }
-
-  /// Bin of an angle: the number of edges that it reaches.
-  [[nodiscard]] std::size_t find(double angle_deg) const {
-    return static_cast<std::size_t>(
-        std::upper_bound(edges_deg_.begin(), edges_deg_.end(), angle_deg) - edges_deg_.begin());
-  }
-
-  /// Number of bins that lie wholly below an edge. Throws argument_error if it is none of ours.
-  [[nodiscard]] std::size_t bins_below(double edge_deg) const {
-    const auto at = std::lower_bound(edges_deg_.begin(), edges_deg_.end(), edge_deg);
-    if (at == edges_deg_.end() || *at != edge_deg)
-      throw argument_error(message("angle_bins: ", edge_deg, " degrees is not an edge"));
-    return static_cast<std::size_t>(at - edges_deg_.begin()) + 1;
-  }
-
- private:
-  std::vector<double> edges_deg_;
-};
-
-/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root, an
-/// arc function or a search: the leading bits of the key choose a cell, which holds at most one
-/// edge. Where a key is too near to an edge for its rounding, or a cell holds several edges, the
-/// table says so, and the caller calculates the angle.
-class key_table {
- public:
-  struct cell {
-    double edge;           ///< key; infinite: no edge here; NaN: ask the angle
-    std::uint32_t bin[2];  ///< of keys above, of keys below the edge: indexed by a sign bit
-  };
-
-  /// Cells of a table.
-  static constexpr std::size_t size() { return cell_of(1) + 1; }
-
-  /// Keys nearer to an edge than this are not trusted: tens of roundings of a key in [0, 1].
-  static constexpr double doubt = 1e-14;
-
-  /// Cell of a key.
-  static constexpr std::size_t cell_of(double key) {
-    return (std::bit_cast<std::uint64_t>(key > lowest ? key : lowest) >> shift) - first;
-  }
-
-  /// keys   keys of the edges, in any order
-  /// bin    bin of a key, std::size_t(double)
-  template <class BinOfKey>
-  key_table(std::vector<double> keys, BinOfKey&& bin) {
-    std::sort(keys.begin(), keys.end());
-    cells_.reserve(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double low = i == 0 ? 0 : lower_end(i);
-      const double high = std::min(1.0, lower_end(i + 1));
-      const auto from = std::lower_bound(keys.begin(), keys.end(), low - doubt);
-      const auto to = std::upper_bound(keys.begin(), keys.end(), high + doubt);
-      cells_.push_back(from == to ? without_edge(bin((low + high) / 2))
-                                  : with_edges(low, *from, *(to - 1), high, bin));
-    }
-  }
-
-  [[nodiscard]] const std::vector<cell>& cells() const { return cells_; }
-
- private:
-  static constexpr double lowest = 0x1p-20;
-  static constexpr int shift = 46;  // leaves 6 of 52 fraction bits: 64 cells an octave
-  static constexpr std::uint64_t first = std::bit_cast<std::uint64_t>(lowest) >> shift;
-
-  static double lower_end(std::size_t i) { return std::bit_cast<double>((first + i) << shift); }
-
-  static cell without_edge(std::size_t bin) {
-    const auto b = static_cast<std::uint32_t>(bin);
-    return {std::numeric_limits<double>::infinity(), {b, b}};
-  }
-
-  template <class BinOfKey>
-  static cell with_edges(double low, double edge, double last, double high, BinOfKey& bin) {
-    if (last - edge > doubt / 4) return {std::numeric_limits<double>::quiet_NaN(), {0, 0}};
-    return {edge,
-            {static_cast<std::uint32_t>(bin(std::min(1.0, (edge + high) / 2))),
-             static_cast<std::uint32_t>(bin(std::max(0.0, (low + edge) / 2)))}};
-  }
-
-  std::vector<cell> cells_;
-};
-
-/// Key of a rotation error: sin^2 of half the angle.
-[[nodiscard]] inline key_table rotation_table(const angle_bins& bins) {
-  std::vector<double> keys;
-  for (const double e : bins.edges_deg()) {
-    const double s = std::sin(math::radians(e) / 2);
-    if (e <= 180) keys.push_back(s * s);
-  }
-  return {std::move(keys),
-          [&](double key) { return bins.find(math::degrees(2 * std::asin(std::sqrt(key)))); }};
-}
-
-/// Key of a direction error below 90 degrees: sin^2 of the angle.
-[[nodiscard]] inline key_table front_table(const angle_bins& bins) {
-  std::vector<double> keys;
-  for (const double e : bins.edges_deg()) {
-    const double s = std::sin(math::radians(e));
-    if (e <= 90) keys.push_back(s * s);
-  }
-  return {std::move(keys),
-          [&](double key) { return bins.find(math::degrees(std::asin(std::sqrt(key)))); }};
-}
-
-/// Key of a direction error above 90 degrees: sin^2 of what is missing to 180.
-[[nodiscard]] inline key_table back_table(const angle_bins& bins) {
-  std::vector<double> keys;
-  for (const double e : bins.edges_deg()) {
-    const double s = std::sin(math::radians(180 - e));
-    if (e >= 90 && e <= 180) keys.push_back(s * s);
-  }
-  return {std::move(keys),
-          [&](double key) { return bins.find(180 - math::degrees(std::asin(std::sqrt(key)))); }};
-}
-
-}  // namespace aib::pose
-
-// aib/pose/pose_relation.hpp
-
-namespace aib::pose {
-
-/// What of the motion between two poses is the error, as evo names it.
-enum class pose_relation {
-  translation,           ///< |t|
-  rotation_part,         ///< |R - I|, Frobenius
-  full,                  ///< |[R t] - [I 0]|, Frobenius
-  angle_deg,             ///< angle of R
-  angle_rad,             ///< angle of R
-  point_distance,        ///< difference of two distances (rpe); the distance itself (ape)
-  point_distance_ratio,  ///< rpe: that difference in percent of the reference's distance
-};
-
-inline constexpr std::array<std::string_view, 7> pose_relation_names = {
-    "translation",    "rotation_part",        "full", "angle_deg", "angle_rad",
-    "point_distance", "point_distance_ratio",
-};
-
-[[nodiscard]] constexpr std::string_view name(pose_relation r) {
-  return pose_relation_names[static_cast<std::size_t>(r)];
-}
-
-/// Errors of frames or of pairs of frames, and their statistics.
-struct pose_errors {
-  stats::summary summary;
-  std::vector<double> errors;      ///< one a frame or pair
-  std::vector<std::size_t> index;  ///< the frame of each, the later one of a pair
-};
-
-/// Size of a motion that should be none.
-[[nodiscard]] inline double magnitude(pose_relation relation, const math::rigid3& error) {
-  const double rotation = (error.rotation - Eigen::Matrix3d::Identity()).norm();
-  switch (relation) {
-    case pose_relation::rotation_part:
-      return rotation;
-    case pose_relation::full:
-      return std::hypot(rotation, error.translation.norm());
-    case pose_relation::angle_deg:
-      return math::degrees(math::rotation_angle(error.rotation));
-    case pose_relation::angle_rad:
-      return math::rotation_angle(error.rotation);
-    default:
-      return error.translation.norm();
-  }
-}
-
-}  // namespace aib::pose
-
-// aib/pose/trajectory.hpp
-
-namespace aib::pose {
-
-/// Camera poses in the order of their source.
-///
-/// `names` and `stamps_s` are empty or as long as the poses. Axes of a camera: x right, y down, z
-/// forward (OpenCV). A pose that is not finite is not registered.
-struct trajectory {
-  std::vector<math::rigid3> world_from_camera = {};
-  std::vector<std::string> names = {};
-  std::vector<double> stamps_s = {};
-  std::vector<std::string> warnings = {};  ///< what the reader repaired or doubts, a sentence each
-
-  [[nodiscard]] std::size_t size() const { return world_from_camera.size(); }
-  [[nodiscard]] bool empty() const { return world_from_camera.empty(); }
-};
-
-/// Throws argument_error unless names and stamps are absent or one a pose.
-inline void check(const trajectory& t) {
-  const auto fits = [&](std::size_t n) { return n == 0 || n == t.size(); };
-  if (fits(t.names.size()) && fits(t.stamps_s.size())) return;
-  throw argument_error(message("trajectory: ", t.size(), " poses, ", t.names.size(), " names, ",
-                               t.stamps_s.size(), " stamps: one of each a pose expected"));
-}
-
-/// The trajectory seen from another frame.
-inline trajectory operator*(const math::sim3& b_from_a, trajectory t) {
-  for (math::rigid3& pose : t.world_from_camera) pose = b_from_a * pose;
-  return t;
-}
-
-/// Camera centres.
-inline std::vector<Eigen::Vector3d> positions(const trajectory& t) {
-  std::vector<Eigen::Vector3d> p;
-  p.reserve(t.size());
-  for (const math::rigid3& pose : t.world_from_camera) p.push_back(pose.translation);
-  return p;
-}
-
-/// The poses at `indices`, with their names and stamps.
-inline trajectory select(const trajectory& t, const std::vector<std::size_t>& indices) {
-  trajectory out;
-  for (const std::size_t i : indices) {
-    out.world_from_camera.push_back(t.world_from_camera.at(i));
-    if (!t.names.empty()) out.names.push_back(t.names.at(i));
-    if (!t.stamps_s.empty()) out.stamps_s.push_back(t.stamps_s.at(i));
-  }
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/registered.hpp
-
-namespace aib::pose {
-
-/// Throws argument_error unless two trajectories have as many poses and, where both have names, the
-/// same names in the same order.
-inline void check_associated(std::string_view who,
-                             const trajectory& estimate,
-                             const trajectory& reference) {
-  check(estimate);
-  check(reference);
-  if (estimate.size() != reference.size()) {
-    throw argument_error(message(who, ": ", estimate.size(), " estimated and ", reference.size(),
-                                 " reference poses; associate them first"));
-  }
-  if (estimate.names.empty() || reference.names.empty()) return;
-  for (std::size_t i = 0; i < estimate.size(); ++i) {
-    if (estimate.names[i] == reference.names[i]) continue;
-    throw argument_error(message(who, ": pose ", i, " is \"", estimate.names[i],
-                                 "\" in the estimate and \"", reference.names[i],
-                                 "\" in the reference; associate them first"));
-  }
-}
-
-/// The frames that have a finite pose in both of two associated trajectories.
-struct registered_frames {
-  std::vector<math::rigid3> estimate;   ///< world_from_camera
-  std::vector<math::rigid3> reference;  ///< world_from_camera
-  std::vector<std::size_t> index;       ///< of each in the trajectories, ascending
-};
-
-/// Throws argument_error as check_associated does.
-[[nodiscard]] inline registered_frames registered(std::string_view who,
-                                                  const trajectory& estimate,
-                                                  const trajectory& reference) {
-  check_associated(who, estimate, reference);
-  registered_frames out;
-  for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const math::rigid3& e = estimate.world_from_camera[i];
-    const math::rigid3& r = reference.world_from_camera[i];
-    if (!e.is_finite() || !r.is_finite()) continue;
-    out.estimate.push_back(e);
-    out.reference.push_back(r);
-    out.index.push_back(i);
-  }
-  return out;
-}
-
-/// The name of a frame of two associated trajectories: one of theirs, else its number.
-[[nodiscard]] inline std::string frame_name(const trajectory& estimate,
-                                            const trajectory& reference,
-                                            std::size_t i) {
-  if (!reference.names.empty()) return reference.names[i];
-  if (!estimate.names.empty()) return estimate.names[i];
-  return message(i);
-}
-
-}  // namespace aib::pose
-
-// aib/pose/ape.hpp
-
-namespace aib::pose {
-
-struct ape_options {
-  pose_relation relation = pose_relation::translation;
-};
-
-/// Absolute pose error: of each frame the motion E = est^-1 ref. Aligns nothing. Frames without a
-/// finite pose are passed over.
-///
-/// Invariant to a common rigid motion. Throws argument_error if the trajectories are not associated
-/// or the relation is a ratio, undefined_error if no frame is registered on both sides.
-/// Source: Sturm et al., IROS 2012, Sec. IV-B; evo, core/metrics.py, APE.
-inline pose_errors ape(const trajectory& estimate,
-                       const trajectory& reference,
-                       const ape_options& options = {}) {
-  if (options.relation == pose_relation::point_distance_ratio)
-    throw argument_error("ape: point_distance_ratio is a relation of pairs; see rpe");
-  const registered_frames frames = registered("ape", estimate, reference);
-  if (frames.index.empty()) {
-    throw undefined_error(
-        message("ape: none of ", estimate.size(), " frames has a finite pose on both sides"));
-  }
-  pose_errors out{.summary = {}, .errors = {}, .index = frames.index};
-  for (std::size_t i = 0; i < frames.index.size(); ++i)
-    out.errors.push_back(
-        magnitude(options.relation, frames.estimate[i].inverse() * frames.reference[i]));
-  out.summary = stats::summarize(out.errors);
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/associate.hpp
-
-namespace aib::pose {
-
-enum class match_by { name, stamp, index };
-
-/// How often a pose may be matched.
-enum class association_rule {
-  one_to_one,
-  evo,  ///< each pose of the shorter trajectory takes its nearest stamp, taken or not
-};
-
-struct associate_options {
-  match_by by = match_by::name;
-  double max_gap_s = 0.01;        ///< stamps: largest difference, inclusive
-  double offset_s = 0;            ///< stamps: added to those of the estimate
-  bool ignore_case = false;       ///< names: IMG_1.jpg is img_1.jpg
-  bool ignore_extension = false;  ///< names: 0001.png is 0001.exr
-  bool ignore_folder = false;     ///< names: images/0001.png is 0001.png
-  association_rule rule = association_rule::one_to_one;
-};
-
-/// Poses that belong together, and what was left out.
-struct association {
-  trajectory estimate;                      ///< in the order of the reference (evo: of the shorter)
-  trajectory reference;                     ///< as long
-  std::vector<std::size_t> estimate_index;  ///< where each pose stood
-  std::vector<std::size_t> reference_index;  ///< where each pose stood
-  std::size_t n_matched;
-  std::size_t n_estimate_only;   ///< poses of the estimate without a partner
-  std::size_t n_reference_only;  ///< poses of the reference without a partner
-};
-
-/// Pairs the poses of an estimate with those of a reference: by image name, by the nearest time
-/// stamp (closest pairs first, each pose once), or by position in the list.
-///
-/// Throws argument_error if names (stamps) are missing or not unique under the rules,
-/// undefined_error if no pose matches; it says which rule on names would have helped.
-association associate(const trajectory& estimate,
-                      const trajectory& reference,
-                      const associate_options& options = {});
-
-namespace detail {
-
-struct index_pair {
-  std::size_t estimate;
-  std::size_t reference;
-};
-
-inline std::string name_key(std::string_view name, const associate_options& rules) {
-  if (rules.ignore_folder) {
-    const std::size_t slash = name.find_last_of("/\\");
-    if (slash != std::string_view::npos) name.remove_prefix(slash + 1);
-  }
-  if (rules.ignore_extension) {
-    const std::size_t slash = name.find_last_of("/\\"), dot = name.find_last_of('.');
-    const std::size_t stem = slash == std::string_view::npos ? 0 : slash + 1;
-    if (dot != std::string_view::npos && dot > stem) name = name.substr(0, dot);
-  }
-  std::string key(name);
-  if (rules.ignore_case) {
-    for (char& c : key) {
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-  }
-  return key;
-}
-
-inline std::unordered_map<std::string, std::size_t> name_table(std::string_view whose,
-                                                               const trajectory& t,
-                                                               const associate_options& rules) {
-  std::unordered_map<std::string, std::size_t> table;
-  for (std::size_t i = 0; i < t.names.size(); ++i) {
-    const auto [at, fresh] = table.emplace(name_key(t.names[i], rules), i);
-    if (fresh) continue;
-    throw argument_error(message("associate: two poses of the ", whose, " have one name: \"",
-                                 t.names[at->second], "\" and \"", t.names[i], "\""));
-  }
-  return table;
-}
-
-inline std::vector<index_pair> match_names(const trajectory& estimate,
-                                           const trajectory& reference,
-                                           const associate_options& options) {
-  if (estimate.names.size() != estimate.size() || reference.names.size() != reference.size())
-    throw argument_error("associate: by name, but not every pose has one; try stamp or index");
-  const auto table = name_table("estimate", estimate, options);
-  name_table("reference", reference, options);
-  std::vector<index_pair> pairs;
-  for (std::size_t r = 0; r < reference.size(); ++r) {
-    const auto at = table.find(name_key(reference.names[r], options));
-    if (at != table.end()) pairs.push_back({at->second, r});
-  }
-  return pairs;
-}
-
-/// Indices of stamps in ascending order, equal ones in their own order.
-inline std::vector<std::size_t> by_stamp(const std::vector<double>& stamps) {
-  std::vector<std::size_t> order(stamps.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
-  return order;
-}
-
-/// A sorted list whose places are taken one after another.
-class free_places {
- public:
-  explicit free_places(std::size_t n) : left_(n + 1), right_(n + 1) {
-    std::iota(left_.begin(), left_.end(), std::size_t{0});
-    std::iota(right_.begin(), right_.end(), std::size_t{0});
-  }
-  /// Nearest free place at or above i; the length where there is none.
-  std::size_t at_or_above(std::size_t i) { return root(right_, i); }
-  /// One more than the nearest free place below i; 0 where there is none.
-  std::size_t end_below(std::size_t i) { return root(left_, i); }
-  void take(std::size_t i) {
-    right_[i] = i + 1;
-    left_[i + 1] = i;
-  }
-
- private:
-  static std::size_t root(std::vector<std::size_t>& parent, std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  std::vector<std::size_t> left_, right_;
-};
-
-/// Pairs in ascending order of their gap, each stamp once.
-inline std::vector<index_pair> match_stamps(const std::vector<double>& estimate,
-                                            const std::vector<double>& reference,
-                                            const associate_options& options) {
-  const std::vector<std::size_t> order = by_stamp(reference);
-  struct candidate {
-    double gap;
-    std::size_t place, estimate;
-    bool operator>(const candidate& o) const {
-      if (gap != o.gap) return gap > o.gap;
-      return place != o.place ? place > o.place : estimate > o.estimate;
-    }
-  };
-  std::priority_queue<candidate, std::vector<candidate>, std::greater<>> nearest;
-  free_places places(order.size());
-  const auto offer = [&](std::size_t e, std::size_t place) {
-    const double gap = std::abs(reference[order[place]] - (estimate[e] + options.offset_s));
-    if (gap <= options.max_gap_s) nearest.push({gap, place, e});
-  };
-  const auto place_of = [&](std::size_t e) {
-    const auto at =
-        std::lower_bound(order.begin(), order.end(), estimate[e] + options.offset_s,
-                         [&](std::size_t r, double stamp) { return reference[r] < stamp; });
-    return static_cast<std::size_t>(at - order.begin());
-  };
-  const auto offer_neighbours = [&](std::size_t e) {
-    const std::size_t above = places.at_or_above(place_of(e)),
-                      below = places.end_below(place_of(e));
-    if (above < order.size()) offer(e, above);
-    if (below > 0) offer(e, below - 1);
-  };
-  for (std::size_t e = 0; e < estimate.size(); ++e) offer_neighbours(e);
-  std::vector<bool> matched(estimate.size());
-  std::vector<index_pair> pairs;
-  while (!nearest.empty()) {
-    const candidate c = nearest.top();
-    nearest.pop();
-    if (matched[c.estimate]) continue;
-    if (places.at_or_above(c.place) != c.place) {  // taken meanwhile
-      offer_neighbours(c.estimate);
-      continue;
-    }
-    places.take(c.place);
-    matched[c.estimate] = true;
-    pairs.push_back({c.estimate, order[c.place]});
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const index_pair& a, const index_pair& b) { return a.reference < b.reference; });
-  return pairs;
-}
-
-/// evo's core/sync.py: every stamp of the shorter list, nearest one of the longer, repetitions
-/// kept.
-inline std::vector<index_pair> match_stamps_as_evo(const std::vector<double>& estimate,
-                                                   const std::vector<double>& reference,
-                                                   const associate_options& options) {
-  const bool estimate_longer = estimate.size() > reference.size();
-  const auto& shorter = estimate_longer ? reference : estimate;
-  const auto& longer = estimate_longer ? estimate : reference;
-  const double offset = estimate_longer ? options.offset_s : -options.offset_s;
-  const std::vector<std::size_t> order = by_stamp(longer);
-  std::vector<index_pair> pairs;
-  for (std::size_t s = 0; s < shorter.size(); ++s) {
-    std::optional<std::size_t> best;
-    double best_gap = std::numeric_limits<double>::infinity();
-    const auto at =
-        std::lower_bound(order.begin(), order.end(), shorter[s] - offset,
-                         [&](std::size_t l, double stamp) { return longer[l] < stamp; });
-    const auto begin = at - std::min<std::ptrdiff_t>(at - order.begin(), 2);
-    const auto end = at + std::min<std::ptrdiff_t>(order.end() - at, 2);
-    for (auto l = begin; l != end; ++l) {
-      const double gap = std::abs(shorter[s] - (longer[*l] + offset));
-      if (gap < best_gap || (gap == best_gap && *l < *best)) {
-        best = *l;
-        best_gap = gap;
-      }
-    }
-    if (!best || !(best_gap <= options.max_gap_s)) continue;
-    pairs.push_back(estimate_longer ? index_pair{*best, s} : index_pair{s, *best});
-  }
-  return pairs;
-}
-
-inline std::vector<index_pair> match_stamps(const trajectory& estimate,
-                                            const trajectory& reference,
-                                            const associate_options& options) {
-  if (estimate.stamps_s.size() != estimate.size() || reference.stamps_s.size() != reference.size())
-    throw argument_error("associate: by stamp, but not every pose has one; try name or index");
-  for (const auto* stamps : {&estimate.stamps_s, &reference.stamps_s}) {
-    for (const double s : *stamps) {
-      if (!std::isfinite(s)) throw argument_error("associate: a stamp is not finite");
-    }
-  }
-  return options.rule == association_rule::evo
-             ? match_stamps_as_evo(estimate.stamps_s, reference.stamps_s, options)
-             : match_stamps(estimate.stamps_s, reference.stamps_s, options);
-}
-
-inline std::vector<index_pair> match_indices(std::size_t n) {
-  std::vector<index_pair> pairs;
-  for (std::size_t i = 0; i < n; ++i) pairs.push_back({i, i});
-  return pairs;
-}
-
-/// What a user may try who got nothing.
-inline std::string advice(const trajectory& estimate,
-                          const trajectory& reference,
-                          const associate_options& options) {
-  if (options.by == match_by::stamp)
-    return message("; stamps within ", options.max_gap_s, " s expected");
-  if (options.by == match_by::index) return "";
-  const std::string names = estimate.empty() || reference.empty()
-                                ? ""
-                                : message(", \"", estimate.names.front(), "\" in the one, \"",
-                                          reference.names.front(), "\" in the other");
-  associate_options loose = options;
-  loose.ignore_case = loose.ignore_extension = loose.ignore_folder = true;
-  std::unordered_map<std::string, std::size_t> table;
-  for (const std::string& name : estimate.names) table.emplace(name_key(name, loose), 0);
-  std::size_t n = 0;
-  for (const std::string& name : reference.names) n += table.count(name_key(name, loose));
-  if (n == 0) return names;
-  return message(names, "; ignore_folder, ignore_extension and ignore_case would match ", n);
-}
-
-inline std::size_t distinct(std::vector<std::size_t> indices) {
-  std::sort(indices.begin(), indices.end());
-  return static_cast<std::size_t>(std::unique(indices.begin(), indices.end()) - indices.begin());
-}
-
-}  // namespace detail
-
-inline association associate(const trajectory& estimate,
-                             const trajectory& reference,
-                             const associate_options& options) {
-  check(estimate);
-  check(reference);
-  if (!(options.max_gap_s >= 0))
-    throw argument_error(message("associate: max_gap >= 0 expected, found ", options.max_gap_s));
-  const std::vector<detail::index_pair> pairs =
-      options.by == match_by::name ? detail::match_names(estimate, reference, options)
-      : options.by == match_by::stamp
-          ? detail::match_stamps(estimate, reference, options)
-          : detail::match_indices(std::min(estimate.size(), reference.size()));
-  if (pairs.empty()) {
-    throw undefined_error(message(
-        "associate: none of ", estimate.size(), " estimated poses matches one of ",
-        reference.size(), " reference poses", detail::advice(estimate, reference, options)));
-  }
-  std::vector<std::size_t> e, r;
-  for (const detail::index_pair& p : pairs) {
-    e.push_back(p.estimate);
-    r.push_back(p.reference);
-  }
-  association out{.estimate = select(estimate, e),
-                  .reference = select(reference, r),
-                  .estimate_index = e,
-                  .reference_index = r,
-                  .n_matched = pairs.size(),
-                  .n_estimate_only = estimate.size() - detail::distinct(e),
-                  .n_reference_only = reference.size() - detail::distinct(r)};
-  if (options.by == match_by::name) out.estimate.names = out.reference.names;
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/joint_counts.hpp
-
-namespace aib::pose {
-
-/// Frame pairs counted by rotation error and by direction error at once, mergeable. Every recall,
-/// folded or signed, of one error or of both, is a sum of its cells.
-class joint_counts {
- public:
-  joint_counts(angle_bins rotation, angle_bins translation)
-      : rotation_(std::move(rotation)), translation_(std::move(translation)), counts_(places()) {}
-
-  [[nodiscard]] const angle_bins& rotation() const { return rotation_; }
-  [[nodiscard]] const angle_bins& translation() const { return translation_; }
-
-  /// Translation bins, and one column of pairs without a direction.
-  [[nodiscard]] std::size_t columns() const { return translation_.size() + 1; }
-  [[nodiscard]] std::size_t places() const { return rotation_.size() * columns(); }
-
-  /// Index of the cell of a pair.
-  [[nodiscard]] std::size_t place(double rotation_deg,
-                                  std::optional<double> translation_deg) const {
-    const std::size_t column =
-        translation_deg ? translation_.find(*translation_deg) : translation_.size();
-    return rotation_.find(rotation_deg) * columns() + column;
-  }
-
-  /// Adds counts of the same layout.
-  template <class Integer>
-  void add(const std::vector<Integer>& counts) {
-    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += counts[i];
-  }
-
-  /// Throw argument_error if the bins differ.
-  joint_counts& operator+=(const joint_counts& other) {
-    check(other);
-    add(other.counts_);
-    return *this;
-  }
-  /// Takes a subset away.
-  joint_counts& operator-=(const joint_counts& subset) {
-    check(subset);
-    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] -= subset.counts_[i];
-    return *this;
-  }
-
-  /// Pairs in rotation bins [0, rotation_end) and columns [column, column_end).
-  [[nodiscard]] std::uint64_t sum(std::size_t rotation_end,
-                                  std::size_t column,
-                                  std::size_t column_end) const {
-    std::uint64_t n = 0;
-    for (std::size_t r = 0; r < rotation_end; ++r) {
-      for (std::size_t c = column; c < column_end; ++c) n += counts_[r * columns() + c];
-    }
-    return n;
-  }
-
-  [[nodiscard]] std::uint64_t pairs() const { return sum(rotation_.size(), 0, columns()); }
-  [[nodiscard]] std::uint64_t without_direction() const {
-    return sum(rotation_.size(), translation_.size(), columns());
-  }
-
- private:
-  void check(const joint_counts& other) const {
-    if (other.rotation_.edges_deg() == rotation_.edges_deg() &&
-        other.translation_.edges_deg() == translation_.edges_deg())
-      return;
-    throw argument_error("joint_counts: the bins differ");
-  }
-
-  angle_bins rotation_, translation_;
-  std::vector<std::uint64_t> counts_;
-};
-
-}  // namespace aib::pose
-
-// aib/pose/auc_convention.hpp
-
-namespace aib::pose {
-
-/// Whose area under the recall curve. On one trajectory they give from 0.47 to 0.69: the convention
-/// is part of the number.
-enum class auc_convention {
-  paper,                ///< E_i E_j^-1, mean over tau = 1..T of min(RRA, RTA), signed directions
-  vggt,                 ///< E_i E_j^-1, max of both errors a pair, folded, last bin closed
-  posediffusion,        ///< as vggt with E_j E_i^-1; pi3 as well
-  posediffusion_torch,  ///< as posediffusion with T + 1 bins on [0, T]
-  da3,                  ///< E_i^-1 E_j from the first camera, else as vggt; depends on that camera
-  colmap,  ///< ordered pairs, trapezoids, inclusive, missing frames count as 180 degrees
-  exact,   ///< exact area under the recall of the max of both errors, signed
-};
-
-inline constexpr std::array<std::string_view, 7> auc_convention_names = {
-    "paper", "vggt", "posediffusion", "posediffusion_torch", "da3", "colmap", "exact",
-};
-
-[[nodiscard]] constexpr std::string_view name(auc_convention c) {
-  return auc_convention_names[static_cast<std::size_t>(c)];
-}
-
-/// Whether a convention takes opposite directions for the same.
-[[nodiscard]] constexpr bool folds(auc_convention c) {
-  return c == auc_convention::vggt || c == auc_convention::posediffusion ||
-         c == auc_convention::posediffusion_torch || c == auc_convention::da3;
-}
-
-/// Whether a convention's relative pose is E_j E_i^-1: that of the frames in reverse.
-[[nodiscard]] constexpr bool reverses(auc_convention c) {
-  return c == auc_convention::posediffusion || c == auc_convention::posediffusion_torch;
-}
-
-/// Whether a convention is a mean over thresholds, so that counts of pairs suffice.
-[[nodiscard]] constexpr bool is_binned(auc_convention c) {
-  return c == auc_convention::paper || folds(c);
-}
-
-/// Share of pairs by threshold, and its mean.
-struct recall {
-  double auc = 0;                ///< by the convention
-  double auc_signed = 0;         ///< the same with directions over 0..180 degrees
-  std::vector<double> rra = {};  ///< at 1, 2, .. max_deg degrees, strictly below
-  std::vector<double> rta = {};  ///< folded where the convention folds
-};
-
-/// The thresholds of a convention, the bins that they need, and their recalls. `convention` is one
-/// that is_binned, `max_deg` in [1, 180].
-class recall_thresholds {
- public:
-  recall_thresholds(auc_convention convention, unsigned max_deg)
-      : convention_(convention), max_deg_(max_deg) {
-    if (!is_binned(convention))
-      throw argument_error(message("auc: convention ", name(convention), " has no thresholds"));
-    if (max_deg < 1 || max_deg > 180)
-      throw argument_error(message("auc: max_deg in [1, 180] expected, found ", max_deg));
-    for (unsigned k = 1; k <= max_deg; ++k) whole_.push_back({static_cast<double>(k), false});
-    averaged_ = convention == auc_convention::posediffusion_torch ? torch(max_deg) : whole_;
-    if (folds(convention)) averaged_.back().closed = true;
-  }
-
-  [[nodiscard]] angle_bins rotation_bins() const {
-    std::vector<double> edges;
-    for (const auto* list : {&whole_, &averaged_}) {
-      for (const threshold t : *list) edges.push_back(t.edge());
-    }
-    return angle_bins(std::move(edges));
-  }
-  [[nodiscard]] angle_bins translation_bins() const {
-    std::vector<double> edges;
-    for (const auto* list : {&whole_, &averaged_}) {
-      for (const threshold t : *list) {
-        edges.push_back(t.edge());
-        if (t.mirrored() > 0) edges.push_back(t.mirrored());
-      }
-    }
-    return angle_bins(std::move(edges));
-  }
-
-  /// Throws undefined_error if no pair has a direction.
-  [[nodiscard]] recall of(const joint_counts& counts) const;
-
- private:
-  struct threshold {
-    double deg;
-    bool closed;  // an error equal to it counts as below
-
-    [[nodiscard]] double edge() const { return closed ? std::nextafter(deg, 360.0) : deg; }
-    /// Edge above which a folded error is below.
-    [[nodiscard]] double mirrored() const {
-      return closed ? 180 - deg : std::nextafter(180 - deg, 360.0);
-    }
-    [[nodiscard]] bool holds_right_angles() const { return deg > 90 || (closed && deg == 90); }
-  };
-
-  static std::vector<threshold> torch(unsigned max_deg) {
-    std::vector<threshold> out;
-    for (unsigned k = 1; k <= max_deg + 1; ++k)
-      out.push_back({static_cast<double>(k) * max_deg / (max_deg + 1), false});
-    return out;
-  }
-
-  /// Pairs below a threshold in their direction, with rotations in bins [0, rotation_end).
-  static std::uint64_t directed(const joint_counts& counts, std::size_t rotation_end, threshold t) {
-    return counts.sum(rotation_end, 0, counts.translation().bins_below(t.edge()));
-  }
-  static std::uint64_t folded(const joint_counts& counts, std::size_t rotation_end, threshold t) {
-    if (t.holds_right_angles()) return counts.sum(rotation_end, 0, counts.columns());
-    return directed(counts, rotation_end, t) +
-           counts.sum(rotation_end, counts.translation().bins_below(t.mirrored()),
-                      counts.translation().size());
-  }
-
-  auc_convention convention_;
-  unsigned max_deg_;
-  std::vector<threshold> whole_, averaged_;
-};
-
-inline recall recall_thresholds::of(const joint_counts& counts) const {
-  const std::uint64_t pairs = counts.pairs();
-  if (pairs == counts.without_direction()) {
-    throw undefined_error(
-        message("auc: none of ", pairs, " pairs has a direction; relative_angles still gives RRA"));
-  }
-  const auto n = static_cast<double>(pairs);
-  const bool folding = folds(convention_);
-  const std::size_t all = counts.rotation().size();
-  recall out;
-  for (const threshold t : whole_) {
-    const std::size_t below = counts.rotation().bins_below(t.deg);
-    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
-    out.rta.push_back(
-        static_cast<double>(folding ? folded(counts, all, t) : directed(counts, all, t)) / n);
-  }
-  if (convention_ == auc_convention::paper) {
-    for (std::size_t k = 0; k < whole_.size(); ++k) out.auc += std::min(out.rra[k], out.rta[k]);
-    out.auc_signed = out.auc /= max_deg_;
-    return out;
-  }
-  for (const threshold t : averaged_) {
-    const std::size_t below = counts.rotation().bins_below(t.edge());
-    out.auc += static_cast<double>(folded(counts, below, t)) / n;
-    out.auc_signed += static_cast<double>(directed(counts, below, t)) / n;
-  }
-  out.auc /= static_cast<double>(averaged_.size());
-  out.auc_signed /= static_cast<double>(averaged_.size());
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/baselines.hpp
-
-namespace aib::pose {
-
-/// The camera centres of a trajectory and which of their differences have a direction: those longer
-/// than 1e-9 of the longest and than 1e-12 of the largest coordinate.
-///
-/// Centres are divided by a power of two near their largest coordinate, so that no square
-/// overflows; lengths below are in that unit. The longest baseline is bounded by a ball and is
-/// searched for only when a baseline lies between the bounds.
-class baselines {
- public:
-  /// poses     finite
-  /// padding   NaN entries behind the centres, for blocks that read over the end
-  explicit baselines(std::span<const math::rigid3> poses, std::size_t padding = 0);
-
-  [[nodiscard]] Eigen::Vector3d between(std::size_t i, std::size_t j) const {
-    return {x[j] - x[i], y[j] - y[i], z[j] - z[i]};
-  }
-
-  /// Any longer baseline has a direction.
-  [[nodiscard]] double certain() const { return std::max(2e-9 * radius_, smallest_); }
-
-  [[nodiscard]] bool has_direction(std::size_t i, std::size_t j) const {
-    const double length = between(i, j).norm();
-    if (length > certain()) return true;
-    if (!(length > std::max(1e-9 * radius_, smallest_))) return false;
-    return length > std::max(1e-9 * longest(), smallest_);
-  }
-
-  std::vector<double> x, y, z;
-
- private:
-  [[nodiscard]] double longest() const;
-
-  std::size_t size_;
-  double smallest_;    // 1e-12 of the largest coordinate
-  double radius_ = 0;  // of a ball about all centres, and at most the longest baseline
-  mutable std::once_flag searched_;
-  mutable double longest_ = 0;
-};
-
-inline baselines::baselines(std::span<const math::rigid3> poses, std::size_t padding)
-    : size_(poses.size()) {
-  double largest = 0;
-  for (const math::rigid3& p : poses)
-    largest = std::max(largest, p.translation.cwiseAbs().maxCoeff());
-  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  smallest_ = 1e-12 * std::scalbn(largest, -exponent);
-  for (auto* axis : {&x, &y, &z})
-    axis->resize(size_ + padding, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < size_; ++i) {
-    x[i] = std::scalbn(poses[i].translation.x(), -exponent);
-    y[i] = std::scalbn(poses[i].translation.y(), -exponent);
-    z[i] = std::scalbn(poses[i].translation.z(), -exponent);
-    radius_ = std::max(radius_, between(0, i).norm());  // about the first centre
-  }
-}
-
-inline double baselines::longest() const {
-  std::call_once(searched_, [&] {
-    for (std::size_t i = 0; i < size_; ++i) {
-      for (std::size_t j = i + 1; j < size_; ++j)
-        longest_ = std::max(longest_, between(i, j).norm());
-    }
-  });
-  return longest_;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/frame_pairs.hpp
-
-namespace aib::pose {
-
-/// Errors of the relative pose of two frames, in degrees, [0, 180].
-struct pair_error {
-  double rotation_deg;
-  std::optional<double> translation_deg;  ///< between directions; nothing where there is none
-};
-
-/// Frames j in [begin, end) that a frame i is paired with.
-struct pair_row {
-  std::size_t begin;
-  std::size_t end;
-};
-
-inline namespace AIB_ISA {
-
-/// The relative poses E_i E_j^-1 (camera-from-world) of all pairs of two trajectories, estimate
-/// against reference, in a stream: memory grows with the frames, never with the pairs.
-///
-/// With R the rotation of world_from_camera, C the camera centre, g the reference, p the estimate:
-///   rotation      R_ij = R_i^T R_j. The error is the angle of R_p,ij R_g,ij^T, which is that of
-///                 A_i^T A_j with the residual A_i = R_p,i R_g,i^T. With unit quaternions a_i of
-///                 A_i its half has the cosine |a_i . a_j|: one dot product of four numbers.
-///   translation   t_ij = R_i^T (C_j - C_i). The angle between t_p,ij and t_g,ij is that between
-///                 A_i^T (C_p,j - C_p,i) and C_g,j - C_g,i: a matrix of frame i, no pair matrix.
-/// Neither angle is calculated: sin^2 of it (of its half for rotations) is compared with the sin^2
-/// of the edges, see key_table. Results are the same bits for any number of threads.
-///
-/// A pair has no direction where a baseline is too short for one, see baselines.
-class frame_pairs {
- public:
-  /// Poses world_from_camera, finite, rotations orthonormal.
-  /// Throws argument_error if the lengths differ.
-  frame_pairs(std::span<const math::rigid3> estimate, std::span<const math::rigid3> reference);
-
-  [[nodiscard]] std::size_t frames() const { return frames_; }
-  [[nodiscard]] const baselines& estimate_baselines() const { return estimate_; }
-  [[nodiscard]] const baselines& reference_baselines() const { return reference_; }
-
-  /// Exact errors of one pair.
-  [[nodiscard]] pair_error error(std::size_t i, std::size_t j) const;
-
-  /// Counts the pairs of every frame i with the frames of `row(i)` by their errors.
-  ///
-  /// row   pair_row(std::size_t i), within [0, frames())
-  template <class Row>
-  [[nodiscard]] joint_counts count_rows(angle_bins rotation,
-                                        angle_bins translation,
-                                        Row&& row,
-                                        unsigned threads = 0,
-                                        const control& control = {}) const;
-
-  /// Counts every pair i < j.
-  [[nodiscard]] joint_counts count(angle_bins rotation,
-                                   angle_bins translation,
-                                   unsigned threads = 0,
-                                   const control& control = {}) const {
-    return count_rows(
-        std::move(rotation), std::move(translation),
-        [n = frames_](std::size_t i) {
-          return pair_row{i + 1, n};
-        },
-        threads, control);
-  }
-
- private:
-  static constexpr std::size_t block = 64;  // pairs that are calculated together, in level 1 cache
-  static constexpr std::size_t rows = 16;   // of a chunk
-
-  struct block_keys {
-    double rotation[block], direction[block];
-    std::uint64_t rotation_cell[block], direction_cell[block];
-  };
-  /// Cells of directions: those of front_table, those of back_table, one that asks.
-  struct cell_tables {
-    std::vector<key_table::cell> rotation, direction;
-  };
-
-  [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
-  [[nodiscard]] static cell_tables tables_of(const joint_counts& bins);
-  void count_row(std::size_t i,
-                 pair_row row,
-                 const cell_tables& tables,
-                 const joint_counts& bins,
-                 std::vector<std::uint32_t>& counts) const;
-
-  std::size_t frames_;
-  std::array<std::vector<double>, 4> residual_;           // quaternions a_i
-  std::vector<Eigen::Matrix3d> reference_from_estimate_;  // A_i^T
-  baselines estimate_, reference_;
-};
-
-inline frame_pairs::frame_pairs(std::span<const math::rigid3> estimate,
-                                std::span<const math::rigid3> reference)
-    : frames_(estimate.size()), estimate_(estimate, block), reference_(reference, block) {
-  if (estimate.size() != reference.size()) {
-    throw argument_error(message("frame_pairs: as many estimated as reference poses expected, ",
-                                 "found ", estimate.size(), " and ", reference.size()));
-  }
-  for (auto& component : residual_) component.resize(frames_ + block);
-  reference_from_estimate_.reserve(frames_);
-  for (std::size_t i = 0; i < frames_; ++i) {
-    const Eigen::Matrix3d a = estimate[i].rotation * reference[i].rotation.transpose();
-    const math::quaternion q = math::quaternion_from(a);
-    residual_[0][i] = q.w;
-    residual_[1][i] = q.x;
-    residual_[2][i] = q.y;
-    residual_[3][i] = q.z;
-    reference_from_estimate_.push_back(a.transpose());
-  }
-}
-
-inline pair_error frame_pairs::error(std::size_t i, std::size_t j) const {
-  const auto a = [&](std::size_t k) {
-    return Eigen::Quaterniond(residual_[0][k], residual_[1][k], residual_[2][k], residual_[3][k]);
-  };
-  const Eigen::Quaterniond q = a(i).conjugate() * a(j);
-  pair_error out{math::degrees(2 * std::atan2(q.vec().norm(), std::abs(q.w()))), std::nullopt};
-  const Eigen::Vector3d g = reference_.between(i, j);
-  const Eigen::Vector3d p = estimate_.between(i, j);
-  if (reference_.has_direction(i, j) && estimate_.has_direction(i, j)) {
-    const Eigen::Vector3d moved = reference_from_estimate_[i] * p;
-    out.translation_deg = math::degrees(std::atan2(g.cross(moved).norm(), g.dot(moved)));
-  }
-  return out;
-}
-
-/// Keys of frame i with the frames j .. j + block - 1. Loops without branches over a fixed number
-/// of pairs, which every compiler turns into vector code.
-inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j) const {
-  block_keys out;
-  const double w = residual_[0][i], x = residual_[1][i], y = residual_[2][i], z = residual_[3][i];
-  const double *ws = &residual_[0][j], *xs = &residual_[1][j], *ys = &residual_[2][j],
-               *zs = &residual_[3][j];
-  for (std::size_t k = 0; k < block; ++k) {
-    const double cosine = w * ws[k] + x * xs[k] + y * ys[k] + z * zs[k];
-    out.rotation[k] = 1 - cosine * cosine;
-    out.rotation_cell[k] = key_table::cell_of(out.rotation[k]);
-  }
-  const Eigen::Matrix3d& m = reference_from_estimate_[i];
-  const double m00 = m(0, 0), m01 = m(0, 1), m02 = m(0, 2), m10 = m(1, 0), m11 = m(1, 1),
-               m12 = m(1, 2), m20 = m(2, 0), m21 = m(2, 1), m22 = m(2, 2);
-  const double gx = reference_.x[i], gy = reference_.y[i], gz = reference_.z[i];
-  const double px = estimate_.x[i], py = estimate_.y[i], pz = estimate_.z[i];
-  const double *gxs = &reference_.x[j], *gys = &reference_.y[j], *gzs = &reference_.z[j];
-  const double *pxs = &estimate_.x[j], *pys = &estimate_.y[j], *pzs = &estimate_.z[j];
-  const double g_certain = reference_.certain() * reference_.certain();
-  const double p_certain = estimate_.certain() * estimate_.certain();
-  constexpr std::uint64_t back = key_table::size(), ask = 2 * back;
-  for (std::size_t k = 0; k < block; ++k) {
-    const double g0 = gxs[k] - gx, g1 = gys[k] - gy, g2 = gzs[k] - gz;
-    const double p0 = pxs[k] - px, p1 = pys[k] - py, p2 = pzs[k] - pz;
-    const double u0 = m00 * p0 + m01 * p1 + m02 * p2;
-    const double u1 = m10 * p0 + m11 * p1 + m12 * p2;
-    const double u2 = m20 * p0 + m21 * p1 + m22 * p2;
-    const double gg = g0 * g0 + g1 * g1 + g2 * g2;
-    const double pp = p0 * p0 + p1 * p1 + p2 * p2;
-    const double dot = g0 * u0 + g1 * u1 + g2 * u2;
-    out.direction[k] = 1 - dot * dot / (gg * pp);
-    const std::uint64_t cell = key_table::cell_of(out.direction[k]) + (dot < 0 ? back : 0);
-    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : ask;
-  }
-  return out;
-}
-
-inline frame_pairs::cell_tables frame_pairs::tables_of(const joint_counts& bins) {
-  cell_tables out;
-  const key_table rotation = rotation_table(bins.rotation());
-  const key_table front = front_table(bins.translation()), back = back_table(bins.translation());
-  const auto columns = static_cast<std::uint32_t>(bins.columns());
-  for (key_table::cell c : rotation.cells())
-    out.rotation.push_back({c.edge, {c.bin[0] * columns, c.bin[1] * columns}});
-  out.direction = front.cells();
-  out.direction.insert(out.direction.end(), back.cells().begin(), back.cells().end());
-  out.direction.push_back({std::numeric_limits<double>::quiet_NaN(), {0, 0}});
-  return out;
-}
-
-inline void frame_pairs::count_row(std::size_t i,
-                                   pair_row row,
-                                   const cell_tables& tables,
-                                   const joint_counts& bins,
-                                   std::vector<std::uint32_t>& counts) const {
-  const key_table::cell* const rotation = tables.rotation.data();
-  const key_table::cell* const direction = tables.direction.data();
-  std::uint32_t* const count = counts.data();
-  for (std::size_t j = row.begin; j < row.end; j += block) {
-    const block_keys keys = keys_of(i, j);
-    const std::size_t n = std::min(block, row.end - j);
-    for (std::size_t k = 0; k < n; ++k) {
-      const key_table::cell& r = rotation[keys.rotation_cell[k]];
-      const key_table::cell& t = direction[keys.direction_cell[k]];
-      const double past_r = keys.rotation[k] - r.edge, past_t = keys.direction[k] - t.edge;
-      if (!(std::abs(past_r) > key_table::doubt) || !(std::abs(past_t) > key_table::doubt))
-          [[unlikely]] {
-        const pair_error e = error(i, j + k);
-        ++count[bins.place(e.rotation_deg, e.translation_deg)];
-      } else {
-        ++count[r.bin[std::signbit(past_r)] + t.bin[std::signbit(past_t)]];
-      }
-    }
-  }
-}
-
-template <class Row>
-joint_counts frame_pairs::count_rows(angle_bins rotation,
-                                     angle_bins translation,
-                                     Row&& row,
-                                     unsigned threads,
-                                     const control& control) const {
-  joint_counts total(std::move(rotation), std::move(translation));
-  const cell_tables tables = tables_of(total);
-  std::mutex mutex;
-  for_each_chunk(frames_, rows, threads, control, [&](const chunk& c) {
-    std::vector<std::uint32_t> counts(total.places());
-    for (std::size_t i = c.begin; i < c.end; ++i) count_row(i, row(i), tables, total, counts);
-    const std::scoped_lock lock(mutex);  // integers: the order of the sums does not matter
-    total.add(counts);
-  });
-  return total;
-}
-
-}  // namespace AIB_ISA
-
-}  // namespace aib::pose
-
-// aib/pose/auc.hpp
-
-namespace aib::pose {
-
-struct auc_options {
-  unsigned max_deg = 30;  ///< T, [1, 180]
-  auc_convention convention = auc_convention::paper;
-  double position_accuracy = 0;  ///< colmap: shorter reference baselines score by rotation alone
-  unsigned threads = 0;          ///< 0: all
-  struct control control = {};
-};
-
-struct auc_result {
-  auc_convention convention;
-  unsigned max_deg;
-  double auc;               ///< share, [0, 1]
-  double auc_signed;        ///< the same with signed directions: mirrored centres fold to nothing
-  std::vector<double> rra;  ///< share of pairs at 1, 2, .. max_deg degrees
-  std::vector<double> rta;  ///< folded where the convention folds
-  std::uint64_t n_pairs;
-  std::uint64_t n_zero_baseline;  ///< pairs without a direction, which never score
-  std::size_t n_unregistered;     ///< frames without a finite pose
-};
-
-/// Area under the recall curve of relative pose errors over all frame pairs, 0..max_deg degrees.
-///
-/// estimate    associated with the reference (`colmap` takes the whole reference where both have
-///             names: frames that are missing score there); its world and scale are its own
-///
-/// Pairs without a direction (see baselines) stay in the denominator; the folding conventions
-/// take them for 90 degrees, as their sources do. Invariant to a similarity of either side (`da3`
-/// only where it keeps the first camera first).
-/// Throws argument_error if the trajectories are not associated or max_deg is out of range,
-/// undefined_error if fewer than two frames are registered or no pair has a direction.
-/// Source: the conventions' own code, see auc_convention; the paper's Sec. 3.
-auc_result auc(const trajectory& estimate,
-               const trajectory& reference,
-               const auc_options& options = {});
-
-namespace detail {
-
-/// The frames in the form that makes frame_pairs' E_i E_j^-1 the relative pose of a convention.
-inline registered_frames frames_for(auc_convention convention, registered_frames frames) {
-  for (auto* poses : {&frames.estimate, &frames.reference}) {
-    if (reverses(convention)) {
-      std::reverse(poses->begin(), poses->end());  // E_j E_i^-1
-    } else if (convention == auc_convention::da3) {
-      // E_i^-1 E_j of E_i E_0^-1 is the relative pose of the inverse poses.
-      const math::rigid3 world_from_first = poses->front();
-      for (math::rigid3& pose : *poses) pose = pose.inverse() * world_from_first;
-    }
-  }
-  return frames;
-}
-
-/// What the exact area needs of a set of pair errors e, mergeable in order.
-struct area_sums {
-  double below = 0;  // sum of (T - e) over e <= T
-  double last = 0;   // largest e <= T
-  std::uint64_t n_zero_baseline = 0;
-  std::vector<std::uint64_t> rotation = {};  // errors below k + 1 degrees, from k on
-  std::vector<std::uint64_t> translation = {};
-
-  explicit area_sums(unsigned max_deg = 0) : rotation(max_deg), translation(max_deg) {}
-
-  void add(double rotation_deg, double translation_deg) {
-    const double e = std::max(rotation_deg, translation_deg);
-    const auto limit = static_cast<double>(rotation.size());
-    if (e <= limit) {
-      below += limit - e;
-      last = std::max(last, e);
-    }
-    if (rotation_deg < limit) ++rotation[static_cast<std::size_t>(rotation_deg)];
-    if (translation_deg < limit) ++translation[static_cast<std::size_t>(translation_deg)];
-  }
-
-  friend area_sums operator+(area_sums a, const area_sums& b) {
-    a.below += b.below;
-    a.last = std::max(a.last, b.last);
-    a.n_zero_baseline += b.n_zero_baseline;
-    for (std::size_t k = 0; k < a.rotation.size(); ++k) {
-      a.rotation[k] += b.rotation[k];
-      a.translation[k] += b.translation[k];
-    }
-    return a;
-  }
-};
-
-/// Sums `visit(area_sums&, i, j)` over all pairs i < j of n frames.
-template <class Visit>
-area_sums sum_pairs(std::size_t n, const auc_options& options, Visit&& visit) {
-  return reduce_chunks<area_sums>(
-      n, 64, options.threads, options.control, area_sums(options.max_deg),
-      [&](const chunk& c) {
-        area_sums sums(options.max_deg);
-        for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < n; ++j) visit(sums, i, j);
-        }
-        return sums;
-      },
-      [](area_sums a, const area_sums& b) { return std::move(a) + b; });
-}
-
-inline std::vector<double> cumulative_shares(const std::vector<std::uint64_t>& counts, double n) {
-  std::vector<double> out;
-  std::uint64_t below = 0;
-  for (const std::uint64_t c : counts) out.push_back(static_cast<double>(below += c) / n);
-  return out;
-}
-
-inline auc_result result_of(const area_sums& sums,
-                            double area,
-                            std::uint64_t n_pairs,
-                            std::size_t n_unregistered,
-                            const auc_options& options) {
-  const auto n = static_cast<double>(n_pairs);
-  const double share = area / (n * options.max_deg);
-  return {.convention = options.convention,
-          .max_deg = options.max_deg,
-          .auc = share,
-          .auc_signed = share,
-          .rra = cumulative_shares(sums.rotation, n),
-          .rta = cumulative_shares(sums.translation, n),
-          .n_pairs = n_pairs,
-          .n_zero_baseline = sums.n_zero_baseline,
-          .n_unregistered = n_unregistered};
-}
-
-inline auc_result exact_auc(const registered_frames& frames,
-                            std::size_t n_unregistered,
-                            const auc_options& options) {
-  const frame_pairs pairs(frames.estimate, frames.reference);
-  const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error e = pairs.error(i, j);
-    s.n_zero_baseline += e.translation_deg ? 0 : 1;
-    s.add(e.rotation_deg, e.translation_deg.value_or(360));
-  });
-  const std::uint64_t n_pairs = n * (n - 1) / 2;
-  if (sums.n_zero_baseline == n_pairs) {
-    throw undefined_error(message("auc: none of ", n_pairs,
-                                  " pairs has a direction; relative_angles still gives RRA"));
-  }
-  return result_of(sums, sums.below, n_pairs, n_unregistered, options);
-}
-
-/// Source: COLMAP benchmark/reconstruction/evaluation/utils.py, compute_rel_errors, compute_auc.
-inline auc_result colmap_auc(const trajectory& estimate,
-                             const trajectory& reference,
-                             const auc_options& options) {
-  const bool named = !estimate.names.empty() && !reference.names.empty();
-  if (!named) check_associated("auc", estimate, reference);
-  std::size_t total = 0;  // reference frames, registered or not
-  for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
-  const association matched =
-      associate(estimate, reference, {.by = named ? match_by::name : match_by::index});
-  registered_frames frames = registered("auc", matched.estimate, matched.reference);
-  if (total < 2) throw undefined_error(message("auc: 2 reference frames expected, found ", total));
-  const frame_pairs pairs(frames.estimate, frames.reference);
-  std::reverse(frames.estimate.begin(), frames.estimate.end());
-  std::reverse(frames.reference.begin(), frames.reference.end());
-  const frame_pairs swapped(frames.estimate, frames.reference);
-  const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error one = pairs.error(i, j), other = swapped.error(n - 1 - j, n - 1 - i);
-    const math::rigid3 &gi = frames.reference[n - 1 - i], &gj = frames.reference[n - 1 - j];
-    const double baseline = (gj.translation - gi.translation).norm();
-    const bool short_reference =
-        baseline < options.position_accuracy || !pairs.reference_baselines().has_direction(i, j);
-    const double without = short_reference ? 0 : 90;
-    const auto translation = [&](const pair_error& e) {
-      return short_reference ? 0 : e.translation_deg.value_or(without);
-    };
-    s.n_zero_baseline += one.translation_deg ? 0 : 2;
-    s.add(one.rotation_deg, translation(one));
-    s.add(other.rotation_deg, translation(other));
-  });
-  return result_of(sums, sums.below + sums.last / 2,
-                   static_cast<std::uint64_t>(total) * (total - 1), total - n, options);
-}
-
-}  // namespace detail
-
-inline auc_result auc(const trajectory& estimate,
-                      const trajectory& reference,
-                      const auc_options& options) {
-  if (options.max_deg < 1 || options.max_deg > 180)
-    throw argument_error(message("auc: max_deg in [1, 180] expected, found ", options.max_deg));
-  if (options.convention == auc_convention::colmap)
-    return detail::colmap_auc(estimate, reference, options);
-  registered_frames frames = registered("auc", estimate, reference);
-  const std::size_t n_unregistered = estimate.size() - frames.index.size();
-  if (frames.index.size() < 2) {
-    throw undefined_error(message("auc: 2 registered frames expected, found ", frames.index.size(),
-                                  " of ", estimate.size()));
-  }
-  if (options.convention == auc_convention::exact)
-    return detail::exact_auc(frames, n_unregistered, options);
-  frames = detail::frames_for(options.convention, std::move(frames));
-  const recall_thresholds thresholds(options.convention, options.max_deg);
-  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
-                                  .count(thresholds.rotation_bins(), thresholds.translation_bins(),
-                                         options.threads, options.control);
-  recall r = thresholds.of(counts);
-  return {.convention = options.convention,
-          .max_deg = options.max_deg,
-          .auc = r.auc,
-          .auc_signed = r.auc_signed,
-          .rra = std::move(r.rra),
-          .rta = std::move(r.rta),
-          .n_pairs = counts.pairs(),
-          .n_zero_baseline = counts.without_direction(),
-          .n_unregistered = n_unregistered};
-}
-
-}  // namespace aib::pose
-
-// aib/pose/auc_breakdown.hpp
-
-namespace aib::pose {
-
-/// The AUC of some of the pairs.
-struct partial_auc {
-  std::optional<recall> value;  ///< nothing where no pair has a direction
-  std::uint64_t n_pairs;
-  std::uint64_t n_zero_baseline;
-};
-
-struct auc_by_batch_result {
-  partial_auc intra;  ///< pairs of frames of one batch; needs no alignment
-  partial_auc cross;  ///< pairs of frames of two batches; means something after alignment only
-};
-
-struct gap_range {
-  std::size_t first;  ///< smallest difference of two frames' places in the trajectory
-  std::size_t last;   ///< largest, inclusive
-};
-
-struct auc_by_gap_result {
-  gap_range gap;
-  partial_auc part;
-};
-
-namespace detail {
-
-/// The frames of a convention and the place of each in its order.
-struct placed_frames {
-  registered_frames frames;
-  std::vector<std::size_t> place;  // in the associated trajectories, in the order of the frames
-};
-
-inline placed_frames placed(const trajectory& estimate,
-                            const trajectory& reference,
-                            const auc_options& options) {
-  placed_frames out{registered("auc", estimate, reference), {}};
-  out.place = out.frames.index;
-  if (reverses(options.convention)) std::reverse(out.place.begin(), out.place.end());
-  if (!out.place.empty()) out.frames = frames_for(options.convention, std::move(out.frames));
-  return out;
-}
-
-inline partial_auc part_of(const joint_counts& counts, const recall_thresholds& thresholds) {
-  partial_auc out{{}, counts.pairs(), counts.without_direction()};
-  if (out.n_pairs > out.n_zero_baseline) out.value = thresholds.of(counts);
-  return out;
-}
-
-}  // namespace detail
-
-/// AUC over the pairs within batches and over those across batches.
-///
-/// batch   the batch of each frame of the associated trajectories
-///
-/// Per-batch alignment to the reference helps the latter, and the former shows the method alone.
-/// Throws argument_error if the trajectories are not associated, `batch` has another length or the
-/// convention is not one of thresholds (colmap, exact).
-inline auc_by_batch_result auc_by_batch(const trajectory& estimate,
-                                        const trajectory& reference,
-                                        std::span<const std::size_t> batch,
-                                        const auc_options& options = {}) {
-  if (batch.size() != estimate.size()) {
-    throw argument_error(message("auc_by_batch: the batch of each of ", estimate.size(),
-                                 " frames expected, found ", batch.size()));
-  }
-  const recall_thresholds thresholds(options.convention, options.max_deg);
-  const detail::placed_frames all = detail::placed(estimate, reference, options);
-  const auto batch_of = [&](std::size_t frame) { return batch[all.place[frame]]; };
-  std::vector<std::size_t> order(all.place.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return batch_of(a) < batch_of(b); });
-  std::vector<math::rigid3> e, r;
-  for (const std::size_t i : order) {
-    e.push_back(all.frames.estimate[i]);
-    r.push_back(all.frames.reference[i]);
-  }
-  const auto end_of_batch = [&](std::size_t i) {
-    const auto end = std::upper_bound(
-        order.begin() + static_cast<std::ptrdiff_t>(i), order.end(), batch_of(order[i]),
-        [&](std::size_t b, std::size_t frame) { return b < batch_of(frame); });
-    return static_cast<std::size_t>(end - order.begin());
-  };
-  const joint_counts intra = frame_pairs(e, r).count_rows(
-      thresholds.rotation_bins(), thresholds.translation_bins(),
-      [&](std::size_t i) {
-        return pair_row{i + 1, end_of_batch(i)};
-      },
-      options.threads, options.control);
-  joint_counts cross = frame_pairs(all.frames.estimate, all.frames.reference)
-                           .count(thresholds.rotation_bins(), thresholds.translation_bins(),
-                                  options.threads, options.control);
-  cross -= intra;
-  return {detail::part_of(intra, thresholds), detail::part_of(cross, thresholds)};
-}
-
-/// AUC over the pairs of frames that lie so many places apart: how far errors accumulate.
-///
-/// Throws as auc_by_batch, and argument_error if a range is empty or begins at 0.
-inline std::vector<auc_by_gap_result> auc_by_gap(const trajectory& estimate,
-                                                 const trajectory& reference,
-                                                 std::span<const gap_range> gaps,
-                                                 const auc_options& options = {}) {
-  const recall_thresholds thresholds(options.convention, options.max_deg);
-  const detail::placed_frames all = detail::placed(estimate, reference, options);
-  const frame_pairs pairs(all.frames.estimate, all.frames.reference);
-  std::vector<std::size_t> place = all.place;  // ascending
-  if (reverses(options.convention)) {
-    for (std::size_t& p : place) p = estimate.size() - 1 - p;
-  }
-  std::vector<auc_by_gap_result> out;
-  for (const gap_range& gap : gaps) {
-    if (gap.first < 1 || gap.last < gap.first) {
-      throw argument_error(message("auc_by_gap: a range of gaps from 1 on expected, found ",
-                                   gap.first, "..", gap.last));
-    }
-    const auto row = [&](std::size_t i) {
-      const auto begin = std::lower_bound(place.begin(), place.end(), place[i] + gap.first);
-      const auto end = std::upper_bound(begin, place.end(), place[i] + gap.last);
-      return pair_row{static_cast<std::size_t>(begin - place.begin()),
-                      static_cast<std::size_t>(end - place.begin())};
-    };
-    const joint_counts counts =
-        pairs.count_rows(thresholds.rotation_bins(), thresholds.translation_bins(), row,
-                         options.threads, options.control);
-    out.push_back({gap, detail::part_of(counts, thresholds)});
-  }
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/delta_pairs.hpp
-
-namespace aib::pose {
-
-enum class delta_unit { frames, m, deg, rad };
-
-struct delta_options {
-  double delta = 1;
-  delta_unit unit = delta_unit::frames;
-  bool all_pairs = false;  ///< every start, not one pair after another
-  double tolerance = 0.1;  ///< all pairs by path or angle: share of delta that a pair may miss
-};
-
-struct frame_pair {
-  std::size_t from;
-  std::size_t to;
-};
-
-/// Length of the path from the first pose to each.
-[[nodiscard]] inline std::vector<double> path_lengths(std::span<const math::rigid3> poses) {
-  std::vector<double> out;
-  double length = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0) length += (poses[i].translation - poses[i - 1].translation).norm();
-    out.push_back(length);
-  }
-  return out;
-}
-
-namespace detail {
-
-[[nodiscard]] inline double turn(const math::rigid3& a, const math::rigid3& b, delta_unit unit) {
-  const double angle = math::rotation_angle(a.rotation.transpose() * b.rotation);
-  return unit == delta_unit::deg ? math::degrees(angle) : angle;
-}
-
-inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_options& options) {
-  const auto delta = static_cast<std::size_t>(options.delta);
-  const std::size_t step = options.all_pairs ? 1 : delta;
-  std::vector<frame_pair> out;
-  for (std::size_t i = 0; i + delta < n; i += step) out.push_back({i, i + delta});
-  return out;
-}
-
-/// Of every place on a path but the last the one whose distance is nearest to delta, the earlier of
-/// two, where it misses it by at most a share of delta.
-inline std::vector<frame_pair> nearest_along_path(std::span<const double> path,
-                                                  double delta,
-                                                  double tolerance) {
-  std::vector<frame_pair> out;
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const auto first = path.begin() + static_cast<std::ptrdiff_t>(i) + 1;
-    const auto miss = [&](auto at) { return std::abs(*at - path[i] - delta); };
-    auto best = std::lower_bound(first, path.end(), path[i] + delta);
-    if (best == path.end() || (best != first && miss(best - 1) <= miss(best))) --best;
-    best = std::lower_bound(first, best, *best);  // of equal ones the first
-    if (miss(best) <= tolerance * delta)
-      out.push_back({i, static_cast<std::size_t>(best - path.begin())});
-  }
-  return out;
-}
-
-inline std::vector<frame_pair> pairs_by_path(std::span<const math::rigid3> poses,
-                                             const delta_options& options) {
-  if (options.all_pairs)
-    return nearest_along_path(path_lengths(poses), options.delta, options.tolerance);
-  std::vector<frame_pair> out;
-  std::vector<std::size_t> stops;  // as evo: the first pair begins at the first stop, not at 0
-  double since = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0) since += (poses[i].translation - poses[i - 1].translation).norm();
-    if (since < options.delta) continue;
-    stops.push_back(i);
-    since = 0;
-  }
-  for (std::size_t k = 1; k < stops.size(); ++k) out.push_back({stops[k - 1], stops[k]});
-  return out;
-}
-
-inline std::vector<frame_pair> pairs_by_angle(std::span<const math::rigid3> poses,
-                                              const delta_options& options) {
-  std::vector<frame_pair> out;
-  if (options.all_pairs) {
-    const double slack = options.tolerance * options.delta;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      for (std::size_t j = i + 1; j < poses.size(); ++j) {
-        const double angle = turn(poses[i], poses[j], options.unit);
-        if (options.delta - slack <= angle && angle <= options.delta + slack) out.push_back({i, j});
-      }
-    }
-    return out;
-  }
-  double since = 0;
-  std::size_t from = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    since += turn(poses[i - 1], poses[i], options.unit);
-    if (since < options.delta) continue;
-    out.push_back({from, i});
-    from = i;
-    since = 0;
-  }
-  return out;
-}
-
-}  // namespace detail
-
-/// Pairs of poses that are delta frames, metres of path, or degrees or radians of turning apart, in
-/// evo's way: one after another (turning adds up from pose to pose), or all (by angle: the angle
-/// between the two).
-///
-/// Throws argument_error unless delta > 0, and whole for frames; undefined_error if no pair is that
-/// far apart.
-/// Source: evo, core/filters.py.
-inline std::vector<frame_pair> delta_pairs(std::span<const math::rigid3> poses,
-                                           const delta_options& options) {
-  const bool whole = options.delta == std::floor(options.delta);
-  if (!(options.delta > 0) || (options.unit == delta_unit::frames && !whole))
-    throw argument_error(message("delta > 0, whole for frames, expected, found ", options.delta));
-  std::vector<frame_pair> pairs =
-      options.unit == delta_unit::frames ? detail::pairs_by_frames(poses.size(), options)
-      : options.unit == delta_unit::m    ? detail::pairs_by_path(poses, options)
-                                         : detail::pairs_by_angle(poses, options);
-  if (pairs.empty()) {
-    throw undefined_error(
-        message("no two of ", poses.size(), " poses are a delta of ", options.delta, " apart"));
-  }
-  return pairs;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/focal.hpp
-
-namespace aib::pose {
-
-/// The camera that a view was estimated with and the one that took it.
-struct camera_pair {
-  math::camera estimate;
-  math::camera reference;
-};
-
-/// What a mean is taken over.
-enum class focal_over {
-  views,    ///< each registered image counts
-  cameras,  ///< each different pair of cameras counts once
-};
-
-struct focal_error_result {
-  double mre;                ///< mean relative error, a share
-  std::size_t n;             ///< views or cameras averaged
-  std::vector<double> each;  ///< relative error of each
-};
-
-[[nodiscard]] inline bool same_camera(const math::camera& a, const math::camera& b) {
-  return a.model == b.model && a.width == b.width && a.height == b.height &&
-         a.parameters == b.parameters;
-}
-
-/// Focal length of a camera as it would be for an image of another size: fx goes with the width, fy
-/// with the height; their mean. Pixels. Throws argument_error where a model has no focal length.
-inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uint64_t height) {
-  const auto ratio = [](std::uint64_t to, std::uint64_t from) {
-    return to == 0 || from == 0 ? 1 : static_cast<double>(to) / static_cast<double>(from);
-  };
-  return (c.fx() * ratio(width, c.width) + c.fy() * ratio(height, c.height)) / 2;
-}
-
-/// Mean of |f - f_ref| / f_ref over views. The estimate's focal lengths are rescaled to the
-/// reference's image size (sizes of 0 are unknown: taken for equal), fx and fy averaged.
-///
-/// Throws undefined_error if there is no view, argument_error where a model has no focal length.
-inline focal_error_result focal_error(std::span<const camera_pair> views,
-                                      focal_over over = focal_over::views) {
-  focal_error_result out{0, 0, {}};
-  std::vector<const camera_pair*> counted;
-  for (const camera_pair& view : views) {
-    const auto is_view = [&](const camera_pair* c) {
-      return same_camera(c->estimate, view.estimate) && same_camera(c->reference, view.reference);
-    };
-    if (over == focal_over::cameras) {
-      if (std::any_of(counted.begin(), counted.end(), is_view)) continue;
-      counted.push_back(&view);
-    }
-    const math::camera& ref = view.reference;
-    const double f_ref = (ref.fx() + ref.fy()) / 2;
-    const double f = focal_at_size(view.estimate, ref.width, ref.height);
-    out.each.push_back(std::abs(f - f_ref) / f_ref);
-    out.mre += out.each.back();
-  }
-  out.n = out.each.size();
-  if (out.n == 0) throw undefined_error("focal_error: no view");
-  out.mre /= static_cast<double>(out.n);
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/intrinsics.hpp
-
-namespace aib::pose {
-
-/// Differences of two cameras, in pixels of the reference's image.
-struct reprojection_difference_result {
-  double mean;  ///< over the image plane
-  double max;
-  std::uint64_t n;       ///< pixels of the grid that both cameras see
-  std::uint64_t n_lost;  ///< pixels whose ray one of them does not have
-};
-
-/// How far apart two cameras show the same direction: rays through a grid of the reference's image,
-/// projected by the estimate, whose pixels are rescaled to the reference's size. Compares any two
-/// models.
-///
-/// cells   of the grid along the longer side; their centres are taken
-///
-/// Throws argument_error if a size is unknown, undefined_error if no ray is seen by both.
-inline reprojection_difference_result reprojection_difference(const math::camera& estimate,
-                                                              const math::camera& reference,
-                                                              std::size_t cells = 32) {
-  if (estimate.width * estimate.height * reference.width * reference.height * cells == 0)
-    throw argument_error("reprojection_difference: image sizes and a grid expected");
-  const auto width = static_cast<double>(reference.width);
-  const auto height = static_cast<double>(reference.height);
-  const Eigen::Array2d rescale(width / static_cast<double>(estimate.width),
-                               height / static_cast<double>(estimate.height));
-  const double cell = std::max(width, height) / static_cast<double>(cells);
-  const auto columns = static_cast<std::size_t>(std::max(1.0, std::round(width / cell)));
-  const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(height / cell)));
-  stats::moments differences;
-  std::uint64_t lost = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < columns; ++column) {
-      const Eigen::Vector2d pixel(
-          (static_cast<double>(column) + 0.5) * width / static_cast<double>(columns),
-          (static_cast<double>(row) + 0.5) * height / static_cast<double>(rows));
-      const auto ray = unproject(reference, pixel);
-      const auto seen = ray ? project(estimate, *ray) : std::nullopt;
-      if (seen)
-        differences.add((seen->array() * rescale - pixel.array()).matrix().norm());
-      else
-        ++lost;
-    }
-  }
-  if (differences.count() == 0) {
-    throw undefined_error(
-        message("reprojection_difference: none of ", lost, " rays is seen by both cameras"));
-  }
-  return {differences.mean(), differences.max(), differences.count(), lost};
-}
-
-struct intrinsics_error_result {
-  focal_error_result focal;
-  double principal_point_px;  ///< mean distance of the principal points, at the reference's size
-  double focal_spread;        ///< standard deviation of the estimated focal length over its mean
-  double reprojection_px;     ///< mean reprojection_difference
-  double reprojection_max_px;
-};
-
-/// Intrinsics of views against those of the reference, all at the reference's image size.
-/// Throws undefined_error if there is no view, argument_error where a model has no focal length or
-/// an image no size.
-inline intrinsics_error_result intrinsics_error(std::span<const camera_pair> views) {
-  intrinsics_error_result out{focal_error(views), 0, 0, 0, 0};
-  stats::moments point, focal, reprojection;
-  reprojection_difference_result d{};
-  const camera_pair* before = nullptr;
-  for (const camera_pair& view : views) {
-    const math::camera &e = view.estimate, &r = view.reference;
-    if (!before || !same_camera(before->estimate, e) || !same_camera(before->reference, r))
-      d = reprojection_difference(e, r);
-    before = &view;
-    const double sx = static_cast<double>(r.width) / static_cast<double>(e.width);
-    const double sy = static_cast<double>(r.height) / static_cast<double>(e.height);
-    point.add(std::hypot(e.cx() * sx - r.cx(), e.cy() * sy - r.cy()));
-    focal.add(focal_at_size(e, r.width, r.height));
-    reprojection.add(d.mean);
-    out.reprojection_max_px = std::max(out.reprojection_max_px, d.max);
-  }
-  out.principal_point_px = point.mean();
-  out.focal_spread = focal.deviation() / focal.mean();
-  out.reprojection_px = reprojection.mean();
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/kitti_odometry.hpp
-
-namespace aib::pose {
-
-struct kitti_odometry_options {
-  std::vector<double> lengths_m = {100, 200, 300, 400, 500, 600, 700, 800};
-  std::size_t step = 10;  ///< frames from one start to the next
-};
-
-/// Mean errors of segments.
-struct segment_errors {
-  double translation_percent;  ///< of the segment's length
-  double rotation_deg_per_m;
-  std::uint64_t n;  ///< segments
-};
-
-struct kitti_odometry_result {
-  segment_errors all;                     ///< over all segments, each counts once
-  std::vector<double> lengths_m;          ///< those that have a segment
-  std::vector<segment_errors> by_length;  ///< one of each
-};
-
-/// KITTI odometry's errors: over segments of the reference's path, from every `step`-th frame, the
-/// motion (est_i^-1 est_j)^-1 (ref_i^-1 ref_j), divided by the segment's length.
-///
-/// Invariant to a rigid motion of either side. Frames without a finite pose are passed over. Throws
-/// argument_error if the trajectories are not associated, undefined_error if the path is shorter
-/// than every length.
-/// Source: Geiger, Lenz, Urtasun, CVPR 2012; devkit, evaluate_odometry.cpp.
-inline kitti_odometry_result kitti_odometry(const trajectory& estimate,
-                                            const trajectory& reference,
-                                            const kitti_odometry_options& options = {}) {
-  if (options.step == 0) throw argument_error("kitti_odometry: step > 0 expected");
-  const registered_frames frames = registered("kitti_odometry", estimate, reference);
-  const std::vector<double> path = path_lengths(frames.reference);
-  kitti_odometry_result out{};
-  for (const double length : options.lengths_m) {
-    if (!(length > 0))
-      throw argument_error(message("kitti_odometry: lengths > 0 expected, found ", length));
-    segment_errors sum{};
-    for (std::size_t i = 0; i < path.size(); i += options.step) {
-      std::size_t j = i;
-      while (j < path.size() && !(path[j] > path[i] + length)) ++j;
-      if (j == path.size()) break;
-      const auto motion = [&](const std::vector<math::rigid3>& poses) {
-        return poses[i].inverse() * poses[j];
-      };
-      const math::rigid3 error = motion(frames.estimate).inverse() * motion(frames.reference);
-      sum.translation_percent += 100 * error.translation.norm() / length;
-      sum.rotation_deg_per_m += math::degrees(math::rotation_angle(error.rotation)) / length;
-      ++sum.n;
-    }
-    if (sum.n == 0) continue;
-    const auto n = static_cast<double>(sum.n);
-    out.all.translation_percent += sum.translation_percent;
-    out.all.rotation_deg_per_m += sum.rotation_deg_per_m;
-    out.all.n += sum.n;
-    out.lengths_m.push_back(length);
-    out.by_length.push_back({sum.translation_percent / n, sum.rotation_deg_per_m / n, sum.n});
-  }
-  if (out.all.n == 0) {
-    throw undefined_error(message("kitti_odometry: no segment; the reference's path is ",
-                                  path.empty() ? 0 : path.back(), " m long"));
-  }
-  out.all.translation_percent /= static_cast<double>(out.all.n);
-  out.all.rotation_deg_per_m /= static_cast<double>(out.all.n);
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/registration.hpp
-
-namespace aib::pose {
-
-struct registration {
-  double rate;                       ///< n_registered / n_total
-  std::size_t n_registered;          ///< reference frames with a finite pose in the estimate
-  std::size_t n_total;               ///< frames of the reference
-  std::vector<std::string> missing;  ///< names of the others, in the reference's order
-};
-
-/// Share of the reference's frames that have a pose in an estimate, or in any of several
-/// sub-models. Frames of the estimate that the reference does not name do not count.
-///
-/// rules   how names are compared, see associate_options
-///
-/// Throws argument_error if poses have no names, undefined_error if the reference is empty.
-inline registration registration_rate(std::span<const trajectory> estimates,
-                                      const trajectory& reference,
-                                      const associate_options& rules = {}) {
-  if (reference.empty()) throw undefined_error("registration_rate: the reference has no frame");
-  std::unordered_set<std::string> posed;
-  for (const trajectory& estimate : estimates) {
-    if (estimate.names.size() != estimate.size() || reference.names.empty())
-      throw argument_error("registration_rate: poses with names expected");
-    for (std::size_t i = 0; i < estimate.size(); ++i) {
-      if (estimate.world_from_camera[i].is_finite())
-        posed.insert(detail::name_key(estimate.names[i], rules));
-    }
-  }
-  registration out{0, 0, reference.size(), {}};
-  for (const std::string& name : reference.names) {
-    if (posed.contains(detail::name_key(name, rules)))
-      ++out.n_registered;
-    else
-      out.missing.push_back(name);
-  }
-  out.rate = static_cast<double>(out.n_registered) / static_cast<double>(out.n_total);
-  return out;
-}
-
-inline registration registration_rate(const trajectory& estimate,
-                                      const trajectory& reference,
-                                      const associate_options& rules = {}) {
-  return registration_rate(std::span(&estimate, 1), reference, rules);
-}
-
-/// Index of the sub-model that is scored: most frames, then most points, then the lowest index.
-/// Never by score. Throws undefined_error if there is none.
-///
-/// n_points   one a model, or empty
-inline std::size_t largest_model(std::span<const trajectory> models,
-                                 std::span<const std::size_t> n_points = {}) {
-  if (models.empty()) throw undefined_error("largest_model: no model");
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < models.size(); ++i) {
-    const bool more_points = !n_points.empty() && n_points[i] > n_points[best];
-    if (models[i].size() > models[best].size() ||
-        (models[i].size() == models[best].size() && more_points))
-      best = i;
-  }
-  return best;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/relative_angles.hpp
-
-namespace aib::pose {
-
-struct relative_angles_options {
-  std::vector<double> tau_deg = {5, 15, 30};  ///< thresholds, (0, 180]
-  unsigned threads = 0;                       ///< 0: all
-  struct control control = {};
-};
-
-/// Shares are of all pairs; a pair without a direction never scores in `rta`.
-struct relative_angles_result {
-  std::vector<double> tau_deg;  ///< as asked for
-  std::vector<double> rra;      ///< relative rotation accuracy: share of pairs below each tau
-  std::vector<double> rta;      ///< relative translation accuracy, signed directions
-  std::uint64_t n_pairs;
-  std::uint64_t n_zero_baseline;  ///< pairs without a direction
-  std::size_t n_unregistered;     ///< frames left out because a pose is not finite
-};
-
-/// Shares of frame pairs whose relative rotation, and whose relative translation direction, is off
-/// by strictly less than each tau.
-///
-/// estimate    associated with the reference; its world and scale are its own
-///
-/// Invariant to a similarity of either side. Throws argument_error if the trajectories are not
-/// associated or a tau is out of range, undefined_error if fewer than two frames are registered.
-/// Source: Jin et al., "Image matching across wide baselines", IJCV 2021, Sec. 3.3.
-inline relative_angles_result relative_angles(const trajectory& estimate,
-                                              const trajectory& reference,
-                                              const relative_angles_options& options = {}) {
-  for (const double tau : options.tau_deg) {
-    if (!(tau > 0 && tau <= 180))
-      throw argument_error(message("relative_angles: tau in (0, 180] expected, found ", tau));
-  }
-  const registered_frames frames = registered("relative_angles", estimate, reference);
-  if (frames.index.size() < 2) {
-    throw undefined_error(message("relative_angles: 2 registered frames expected, found ",
-                                  frames.index.size(), " of ", estimate.size()));
-  }
-  const angle_bins bins(options.tau_deg);
-  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
-                                  .count(bins, bins, options.threads, options.control);
-  relative_angles_result out{.tau_deg = options.tau_deg,
-                             .rra = {},
-                             .rta = {},
-                             .n_pairs = counts.pairs(),
-                             .n_zero_baseline = counts.without_direction(),
-                             .n_unregistered = estimate.size() - frames.index.size()};
-  const auto n = static_cast<double>(out.n_pairs);
-  for (const double tau : options.tau_deg) {
-    const std::size_t below = bins.bins_below(tau);
-    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
-    out.rta.push_back(static_cast<double>(counts.sum(bins.size(), 0, below)) / n);
-  }
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/rpe.hpp
-
-namespace aib::pose {
-
-/// Whose path or turning tells which poses are a delta apart.
-enum class pairs_from { estimate, reference };
-
-struct rpe_options {
-  pose_relation relation = pose_relation::translation;
-  delta_options pairs = {};
-  pairs_from from = pairs_from::estimate;  ///< evo's default
-};
-
-/// Relative pose error: of each pair of poses a delta apart the motion
-/// E = (ref_i^-1 ref_j)^-1 (est_i^-1 est_j). Frames without a finite pose are passed over before
-/// deltas are counted.
-///
-/// Invariant to a rigid motion of either side. Pairs with a reference distance of 0 have no
-/// point_distance_ratio and are left out. Throws argument_error if the trajectories are not
-/// associated or delta is not positive, undefined_error if no pair is a delta apart.
-/// Source: Sturm et al., IROS 2012, Sec. IV-A; evo, core/metrics.py, RPE.
-inline pose_errors rpe(const trajectory& estimate,
-                       const trajectory& reference,
-                       const rpe_options& options = {}) {
-  const registered_frames frames = registered("rpe", estimate, reference);
-  const auto& path = options.from == pairs_from::estimate ? frames.estimate : frames.reference;
-  const bool ratio = options.relation == pose_relation::point_distance_ratio;
-  pose_errors out;
-  for (const frame_pair& pair : delta_pairs(path, options.pairs)) {
-    const auto motion = [&](const std::vector<math::rigid3>& poses) {
-      return poses[pair.from].inverse() * poses[pair.to];
-    };
-    const math::rigid3 est = motion(frames.estimate), ref = motion(frames.reference);
-    double error = magnitude(options.relation, ref.inverse() * est);
-    if (ratio || options.relation == pose_relation::point_distance)
-      error = std::abs(ref.translation.norm() - est.translation.norm());
-    if (ratio) {
-      if (ref.translation.norm() == 0) continue;
-      error *= 100 / ref.translation.norm();
-    }
-    out.errors.push_back(error);
-    out.index.push_back(frames.index[pair.to]);
-  }
-  if (out.errors.empty()) throw undefined_error("rpe: no reference pose moves over a delta");
-  out.summary = stats::summarize(out.errors);
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/sub_trajectory.hpp
-
-namespace aib::pose {
-
-struct sub_trajectory_options {
-  std::vector<double> lengths = {};  ///< empty: 10, 20, .. 50 % of the reference's path
-  double tolerance = 0.2;            ///< share of the length that a sub-trajectory may miss
-};
-
-/// Errors over the sub-trajectories of one length.
-struct sub_trajectory_errors {
-  double length;
-  stats::summary translation;          ///< unit of the positions
-  stats::summary translation_percent;  ///< of the length
-  stats::summary rotation_deg;
-  stats::summary rotation_deg_per_m;
-  stats::summary yaw_deg;      ///< about the world's z axis
-  stats::summary gravity_deg;  ///< of roll and pitch: what gravity would tell
-};
-
-/// Relative errors by the length of sub-trajectories, as rpg_trajectory_evaluation has them: every
-/// frame starts one that ends where the reference's path is nearest to the length; the error
-/// (ref_i^-1 ref_j)^-1 (est_i^-1 est_j) is turned into the estimate's world. Lengths with fewer
-/// than two sub-trajectories are left out.
-///
-/// Invariant to a translation and a turn about z of either side. Frames without a finite pose are
-/// passed over. Throws argument_error if the trajectories are not associated, undefined_error if no
-/// length has two.
-/// Source: Zhang and Scaramuzza, IROS 2018, Sec. IV; rpg_trajectory_evaluation,
-/// compute_trajectory_errors.py.
-inline std::vector<sub_trajectory_errors> sub_trajectories(
-    const trajectory& estimate,
-    const trajectory& reference,
-    const sub_trajectory_options& options = {}) {
-  const registered_frames frames = registered("sub_trajectories", estimate, reference);
-  const std::vector<double> path = path_lengths(frames.reference);
-  std::vector<double> lengths = options.lengths;
-  if (lengths.empty() && !path.empty()) {
-    for (int k = 1; k <= 5; ++k) lengths.push_back(path.back() * k / 10);
-  }
-  std::vector<sub_trajectory_errors> out;
-  for (const double length : lengths) {
-    std::vector<double> translation, percent, rotation, per_m, yaw, gravity;
-    for (const frame_pair& pair : detail::nearest_along_path(path, length, options.tolerance)) {
-      const auto motion = [&](const std::vector<math::rigid3>& poses) {
-        return poses[pair.from].inverse() * poses[pair.to];
-      };
-      const math::rigid3 error = motion(frames.reference).inverse() * motion(frames.estimate);
-      const Eigen::Matrix3d& w = frames.estimate[pair.to].rotation;
-      const Eigen::Matrix3d r = w * error.rotation * w.transpose();
-      translation.push_back(error.translation.norm());
-      percent.push_back(100 * translation.back() / length);
-      rotation.push_back(math::degrees(math::rotation_angle(r)));
-      per_m.push_back(rotation.back() / length);
-      yaw.push_back(math::degrees(std::abs(std::atan2(r(1, 0), r(0, 0)))));
-      const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
-      gravity.push_back(math::degrees(std::hypot(pitch, std::atan2(r(2, 1), r(2, 2)))));
-    }
-    if (translation.size() < 2) continue;
-    out.push_back({length, stats::summarize(translation), stats::summarize(percent),
-                   stats::summarize(rotation), stats::summarize(per_m), stats::summarize(yaw),
-                   stats::summarize(gravity)});
-  }
-  if (out.empty()) {
-    throw undefined_error(message("sub_trajectories: no length has two; the reference's path is ",
-                                  path.empty() ? 0 : path.back(), " long"));
-  }
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/pose/worst_pairs.hpp
-
-namespace aib::pose {
-
-struct worst_pairs_options {
-  std::size_t n = 10;    ///< how many
-  unsigned threads = 0;  ///< 0: all
-  struct control control = {};
-};
-
-struct worst_pair {
-  std::string first, second;  ///< names, or numbers where there are none
-  double rotation_deg;
-  std::optional<double> translation_deg;  ///< signed direction; nothing where there is none
-};
-
-/// The pairs of frames with the largest error, rotation or direction, in descending order.
-/// Throws argument_error if the trajectories are not associated.
-inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
-                                           const trajectory& reference,
-                                           const worst_pairs_options& options = {}) {
-  const registered_frames frames = registered("worst_pairs", estimate, reference);
-  const frame_pairs pairs(frames.estimate, frames.reference);
-  struct found {
-    double error;
-    std::size_t i, j;
-    pair_error angles;
-    bool operator<(const found& o) const {
-      if (error != o.error) return error > o.error;
-      return i != o.i ? i < o.i : j < o.j;
-    }
-  };
-  const auto keep_worst = [&](std::vector<found>& list) {
-    const std::size_t n = std::min(options.n, list.size());
-    std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(n), list.end());
-    list.resize(n);
-  };
-  const auto worst = reduce_chunks<std::vector<found>>(
-      pairs.frames(), 64, options.threads, options.control, std::vector<found>(),
-      [&](const chunk& c) {
-        std::vector<found> list;
-        for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < pairs.frames(); ++j) {
-            const pair_error e = pairs.error(i, j);
-            list.push_back({std::max(e.rotation_deg, e.translation_deg.value_or(0)), i, j, e});
-            if (list.size() >= 2 * options.n + 1000) keep_worst(list);
-          }
-          keep_worst(list);
-        }
-        return list;
-      },
-      [&](std::vector<found> a, std::vector<found> b) {
-        a.insert(a.end(), b.begin(), b.end());
-        keep_worst(a);
-        return a;
-      });
-  std::vector<worst_pair> out;
-  for (const found& f : worst) {
-    out.push_back({frame_name(estimate, reference, frames.index[f.i]),
-                   frame_name(estimate, reference, frames.index[f.j]), f.angles.rotation_deg,
-                   f.angles.translation_deg});
-  }
-  return out;
-}
-
-}  // namespace aib::pose
-
-// aib/cloud/cloud.hpp
-
-namespace aib::cloud {
-
-using color = std::array<std::uint8_t, 3>;
-
-/// Points with what may come with them. A point lies at `origin + points[i]`: float keeps a tenth
-/// of a millimetre within a kilometre, the double origin keeps map coordinates (UTM) exact.
-///
-/// `normals`, `colors` and `labels` are empty or one a point.
-struct cloud {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> points = {};
-  std::vector<Eigen::Vector3f> normals = {};
-  std::vector<color> colors = {};
-  std::vector<std::uint32_t> labels = {};
-  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
-
-  [[nodiscard]] std::size_t size() const { return points.size(); }
-  [[nodiscard]] bool empty() const { return points.empty(); }
-  [[nodiscard]] Eigen::Vector3d position(std::size_t i) const {
-    return origin + points[i].cast<double>();
-  }
-};
-
-/// The origin that readers give a cloud whose box is [low, high]: 0 where floats hold it well
-/// (|coordinate| < 1024), else the box centre in whole units.
-[[nodiscard]] inline Eigen::Vector3d natural_origin(const Eigen::Vector3d& low,
-                                                    const Eigen::Vector3d& high) {
-  if (low.cwiseAbs().maxCoeff() < 1024 && high.cwiseAbs().maxCoeff() < 1024)
-    return Eigen::Vector3d::Zero();
-  return ((low + high) / 2).array().round();
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/box.hpp
-
-namespace aib::cloud {
-
-/// A box along the axes, both ends included. Empty until something is added.
-struct box {
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
-
-  [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
-  [[nodiscard]] Eigen::Vector3d size() const { return high - low; }
-  [[nodiscard]] Eigen::Vector3d centre() const { return (low + high) / 2; }
-  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
-    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
-  }
-  void add(const Eigen::Vector3d& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
-
-/// Box of the finite points among `points`, which are counted from `origin`.
-[[nodiscard]] inline box bounds(std::span<const Eigen::Vector3f> points,
-                                const Eigen::Vector3d& origin) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  Eigen::Vector3f low = Eigen::Vector3f::Constant(infinity);
-  Eigen::Vector3f high = -low;
-  for (const Eigen::Vector3f& p : points) {
-    if (!p.allFinite()) continue;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return {origin + low.cast<double>(), origin + high.cast<double>()};
-}
-
-/// Box of the finite points of a cloud.
-[[nodiscard]] inline box bounds(const cloud& c) { return bounds(c.points, c.origin); }
-
-}  // namespace aib::cloud
-
-// aib/cloud/positions.hpp
-
-namespace aib::cloud {
-
-/// Whether the three coordinates are finite.
-[[nodiscard]] inline bool is_finite(const Eigen::Vector3f& p) {
-  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
-}
-
-/// Positions in double as the float points of a cloud, counted from their natural origin.
-struct placed_points {
-  Eigen::Vector3d origin;
-  std::vector<Eigen::Vector3f> points;
-};
-
-/// Places n positions; `position(i)` is called twice for each i. Non-finite positions stay what
-/// they are and have no part in the origin.
-template <class Position>
-[[nodiscard]] placed_points place(std::size_t n, Position&& position) {
-  box all;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d p = position(i);
-    if (p.allFinite()) all.add(p);
-  }
-  placed_points placed;
-  placed.origin = all.empty() ? Eigen::Vector3d(0, 0, 0) : natural_origin(all.low, all.high);
-  placed.points.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d p = position(i) - placed.origin;
-    placed.points[i] = p.cast<float>();
-  }
-  return placed;
-}
-
-/// The cloud of a range of points of any type that `point_traits` knows.
-template <point_range Range>
-[[nodiscard]] cloud from_points(const Range& range) {
-  const auto at = [&](std::size_t i) {
-    using difference = std::ranges::range_difference_t<const Range>;
-    return as_vector<double>(std::ranges::begin(range)[static_cast<difference>(i)]);
-  };
-  placed_points placed = place(static_cast<std::size_t>(std::ranges::size(range)), at);
-  return {.origin = placed.origin, .points = std::move(placed.points)};
-}
-
-/// The finite points of a cloud as floats from a chosen origin. Borrows the cloud where nothing has
-/// to be changed.
-class finite_points {
- public:
-  finite_points(const cloud& source, const Eigen::Vector3d& origin) : n_given_(source.size()) {
-    if (source.size() > std::numeric_limits<std::uint32_t>::max()) {
-      throw argument_error(
-          message("cloud: at most 4 294 967 295 points expected, found ", source.size()));
-    }
-    if (source.origin == origin && all_finite(source.points)) {
-      borrowed_ = source.points;
-    } else {
-      copy_finite(source, source.origin - origin);
-    }
-  }
-
-  [[nodiscard]] std::span<const Eigen::Vector3f> points() const {
-    return copied_ ? std::span<const Eigen::Vector3f>(own_) : borrowed_;
-  }
-  [[nodiscard]] std::size_t n_given() const { return n_given_; }
-  [[nodiscard]] std::size_t n_dropped() const { return n_given_ - points().size(); }
-
-  /// Index in the cloud of finite point i.
-  [[nodiscard]] std::size_t source_index(std::size_t i) const { return copied_ ? kept_[i] : i; }
-
- private:
-  static bool all_finite(std::span<const Eigen::Vector3f> points) {
-    for (const Eigen::Vector3f& p : points) {
-      if (!is_finite(p)) return false;
-    }
-    return true;
-  }
-
-  void copy_finite(const cloud& source, const Eigen::Vector3d& shift) {
-    copied_ = true;
-    own_.reserve(source.size());
-    kept_.reserve(source.size());
-    for (std::size_t i = 0; i < source.size(); ++i) {
-      const Eigen::Vector3d moved = shift + source.points[i].cast<double>();
-      const Eigen::Vector3f p = moved.cast<float>();
-      if (!is_finite(p)) continue;
-      own_.push_back(p);
-      kept_.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-
-  std::size_t n_given_;
-  bool copied_ = false;
-  std::span<const Eigen::Vector3f> borrowed_;
-  std::vector<Eigen::Vector3f> own_;
-  std::vector<std::uint32_t> kept_;
-};
-
-}  // namespace aib::cloud
-
-// aib/cloud/distances.hpp
-
-namespace aib::cloud {
-
-/// What becomes of a distance that is not below the maximum.
-enum class maximum_rule {
-  drop,   ///< left out of all statistics but shares (DTU)
-  clamp,  ///< counts as the maximum (CloudCompare)
-};
-
-struct distance_options {
-  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  maximum_rule rule = maximum_rule::drop;
-  unsigned threads = 0;  ///< 0: all
-  aib::control control = {};
-};
-
-/// Distances from each point of a cloud to another thing, with their statistics.
-///
-/// Statistics throw undefined_error where no distance counts.
-class distances {
- public:
-  /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
-  /// brought to one origin in double first.
-  ///
-  /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
-  /// not positive.
-  distances(const cloud& from, const cloud& to, const distance_options& options = {});
-
-  /// Distances that are known: NaN for a point that had none, any value >= max_distance where it is
-  /// that far or farther.
-  explicit distances(std::vector<float> values, const distance_options& options = {});
-
-  /// One value a point of the cloud, in its order: NaN for a point that is not finite; beyond the
-  /// maximum +infinity (drop) or the maximum (clamp).
-  [[nodiscard]] std::span<const float> values() const { return values_; }
-  [[nodiscard]] std::size_t size() const { return values_.size(); }
-  [[nodiscard]] float operator[](std::size_t i) const { return values_[i]; }
-
-  [[nodiscard]] std::size_t n_dropped() const { return n_dropped_; }  ///< not finite
-  [[nodiscard]] std::size_t n_beyond() const { return n_beyond_; }    ///< not below max_distance
-  [[nodiscard]] std::size_t n_finite() const { return size() - n_dropped_; }
-  [[nodiscard]] double share_beyond() const;  ///< of the finite points
-
-  [[nodiscard]] double mean() const;
-  [[nodiscard]] double rmse() const;
-  [[nodiscard]] double max() const;
-  [[nodiscard]] double median() const { return quantile(0.5); }
-  /// q in [0, 1], interpolated linearly.
-  [[nodiscard]] double quantile(double q) const;
-
-  /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
-  /// in the denominator. Throws argument_error if tau is above the maximum.
-  [[nodiscard]] double share_below(double tau) const;
-
- private:
-  void apply_maximum();
-  void summarize();
-  [[nodiscard]] std::size_t n_counted() const;
-  void demand_values(const char* what) const;
-
-  std::vector<float> values_;
-  distance_options options_;
-  std::size_t n_dropped_ = 0;
-  std::size_t n_beyond_ = 0;
-  double sum_ = 0;
-  double sum_of_squares_ = 0;
-  double max_ = 0;
-};
-
-namespace detail {
-
-inline constexpr std::size_t value_chunk = 1 << 16;
-
-inline void demand_points(const char* function, const char* which, const finite_points& p) {
-  if (p.points().empty()) {
-    throw undefined_error(message(function, ": no finite point in the ", which, " cloud (",
-                                  p.n_given(), " points, ", p.n_dropped(), " not finite)"));
-  }
-}
-
-inline void check_maximum(const distance_options& options) {
-  if (options.max_distance && !(*options.max_distance > 0)) {
-    throw argument_error(
-        message("cloud::distances: max_distance > 0 expected, found ", *options.max_distance));
-  }
-}
-
-/// A float not below the square of the largest distance that counts.
-inline float squared_bound(const distance_options& options) {
-  if (!options.max_distance) return std::numeric_limits<float>::infinity();
-  const double reach = *options.max_distance * (1 + 1e-6);
-  const double largest = std::numeric_limits<float>::max();
-  return static_cast<float>(std::min(reach * reach, largest));
-}
-
-/// Distances in the order of the cloud, of squares in the order of its finite points.
-inline std::vector<float> roots_in_place(const finite_points& from, std::vector<float> squared) {
-  for (float& d : squared) d = std::sqrt(d);
-  if (from.n_dropped() == 0) return squared;
-  std::vector<float> values(from.n_given(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < squared.size(); ++i) values[from.source_index(i)] = squared[i];
-  return values;
-}
-
-inline search::nearest_options search_options(const distance_options& options) {
-  return {.squared_bound = squared_bound(options),
-          .threads = options.threads,
-          .control = options.control};
-}
-
-}  // namespace detail
-
-inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
-    : options_(options) {
-  detail::check_maximum(options);
-  const finite_points a(from, to.origin);
-  const finite_points b(to, to.origin);
-  detail::demand_points("cloud::distances", "first", a);
-  detail::demand_points("cloud::distances", "second", b);
-  const search::curve order = search::common_curve(a.points(), b.points());
-  const search::box_tree queries(a.points(), order, options.threads, options.control);
-  const search::box_tree targets(b.points(), order, options.threads, options.control);
-  values_ = detail::roots_in_place(
-      a, search::nearest_squared(queries, targets, detail::search_options(options)));
-  apply_maximum();
-  summarize();
-}
-
-inline distances::distances(std::vector<float> values, const distance_options& options)
-    : values_(std::move(values)), options_(options) {
-  detail::check_maximum(options);
-  apply_maximum();
-  summarize();
-}
-
-inline void distances::apply_maximum() {
-  if (!options_.max_distance) return;
-  const bool drop = options_.rule == maximum_rule::drop;
-  const float beyond =
-      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
-  for (float& value : values_) {
-    if (static_cast<double>(value) >= *options_.max_distance) {
-      value = beyond;
-      ++n_beyond_;
-    }
-  }
-}
-
-inline void distances::summarize() {
-  struct sums {
-    std::size_t dropped = 0;
-    double sum = 0, squares = 0, max = 0;
-  };
-  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
-  const auto sum_chunk = [&](const chunk& c) {
-    sums s;
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const double d = values_[i];
-      if (std::isnan(d)) ++s.dropped;
-      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
-      s.sum += d;
-      s.squares += d * d;
-      s.max = std::max(s.max, d);
-    }
-    return s;
-  };
-  const auto combine = [](sums a, const sums& b) {
-    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
-                std::max(a.max, b.max)};
-  };
-  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
-                                   sums{}, sum_chunk, combine);
-  n_dropped_ = total.dropped;
-  sum_ = total.sum;
-  sum_of_squares_ = total.squares;
-  max_ = total.max;
-}
-
-inline std::size_t distances::n_counted() const {
-  const bool drop = options_.max_distance && options_.rule == maximum_rule::drop;
-  return n_finite() - (drop ? n_beyond_ : 0);
-}
-
-inline void distances::demand_values(const char* what) const {
-  if (n_counted() > 0) return;
-  throw undefined_error(message("cloud::distances: no distance to take the ", what, " of (", size(),
-                                " points, ", n_dropped_, " not finite, ", n_beyond_,
-                                " beyond max_distance)"));
-}
-
-inline double distances::share_beyond() const {
-  if (n_finite() == 0) demand_values("share");
-  return static_cast<double>(n_beyond_) / static_cast<double>(n_finite());
-}
-
-inline double distances::mean() const {
-  demand_values("mean");
-  return sum_ / static_cast<double>(n_counted());
-}
-
-inline double distances::rmse() const {
-  demand_values("root mean square");
-  return std::sqrt(sum_of_squares_ / static_cast<double>(n_counted()));
-}
-
-inline double distances::max() const {
-  demand_values("maximum");
-  return max_;
-}
-
-inline double distances::quantile(double q) const {
-  demand_values("quantile");
-  std::vector<float> counted;
-  counted.reserve(n_counted());
-  const bool all = n_counted() == n_finite();
-  std::copy_if(values_.begin(), values_.end(), std::back_inserter(counted),
-               [&](float d) { return !std::isnan(d) && (all || !std::isinf(d)); });
-  return stats::quantile_in_place<float>(counted, q);
-}
-
-inline double distances::share_below(double tau) const {
-  if (n_finite() == 0) demand_values("share");
-  if (options_.max_distance && tau > *options_.max_distance) {
-    throw argument_error(
-        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
-  }
-  const auto count_chunk = [&](const chunk& c) {
-    std::size_t n = 0;
-    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
-    return n;
-  };
-  const std::size_t below =
-      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
-                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
-  return static_cast<double>(below) / static_cast<double>(n_finite());
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/compare.hpp
-
-namespace aib::cloud {
-
-struct compare_options {
-  std::vector<double> tau = {};             ///< thresholds of precision, recall and F-score
-  std::optional<double> max_distance = {};  ///< none: every distance counts as it is
-  maximum_rule rule = maximum_rule::drop;
-  unsigned threads = 0;  ///< 0: all
-  aib::control control = {};
-};
-
-/// Scores at one threshold.
-/// Source: Knapitsch et al., "Tanks and Temples", SIGGRAPH 2017, section 4.
-struct threshold_scores {
-  double tau;
-  double precision;  ///< share of the estimate strictly below tau of the reference
-  double recall;     ///< share of the reference strictly below tau of the estimate
-  double f_score;    ///< harmonic mean of both; 0 where both are 0
-};
-
-/// How an estimated cloud differs from a reference. Lengths in the unit of the clouds.
-struct comparison {
-  double accuracy;      ///< mean distance from the estimate to the reference
-  double completeness;  ///< mean distance from the reference to the estimate
-  double chamfer;       ///< sum of both
-  double chamfer_mean;  ///< half of it
-  double f1_distance;   ///< harmonic mean of both, a length; 0 where both are 0
-  double accuracy_median;
-  double completeness_median;
-  double accuracy_rmse;
-  double completeness_rmse;
-  double hausdorff;                      ///< the larger of both directed maxima
-  std::vector<threshold_scores> scores;  ///< one a threshold, in the order asked for
-  std::size_t n_estimate;                ///< points that were compared
-  std::size_t n_reference;
-  std::size_t n_dropped;    ///< points of both clouds that are not finite
-  double estimate_beyond;   ///< share of the estimate not below max_distance
-  double reference_beyond;  ///< share of the reference not below max_distance
-};
-
-/// Distances in both directions, each cloud sorted and indexed once.
-struct two_way_distances {
-  distances to_reference;  ///< of the points of the estimate
-  distances to_estimate;   ///< of the points of the reference
-};
-
-namespace detail {
-
-inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
-
-}  // namespace detail
-
-/// Distances from the estimate to the reference and back.
-/// Throws undefined_error if either cloud has no finite point.
-[[nodiscard]] inline two_way_distances distances_both_ways(const cloud& estimate,
-                                                           const cloud& reference,
-                                                           const distance_options& options = {}) {
-  detail::check_maximum(options);
-  const finite_points e(estimate, reference.origin);
-  const finite_points r(reference, reference.origin);
-  detail::demand_points("cloud::compare", "estimated", e);
-  detail::demand_points("cloud::compare", "reference", r);
-  const search::curve order = search::common_curve(e.points(), r.points());
-  const search::box_tree e_tree(e.points(), order, options.threads, options.control);
-  const search::box_tree r_tree(r.points(), order, options.threads, options.control);
-  const auto search = detail::search_options(options);
-  return {distances(detail::roots_in_place(e, search::nearest_squared(e_tree, r_tree, search)),
-                    options),
-          distances(detail::roots_in_place(r, search::nearest_squared(r_tree, e_tree, search)),
-                    options)};
-}
-
-/// The scores of distances in both directions, wherever they come from.
-[[nodiscard]] inline comparison score(const distances& to_reference,
-                                      const distances& to_estimate,
-                                      std::span<const double> tau = {}) {
-  const double accuracy = to_reference.mean();
-  const double completeness = to_estimate.mean();
-  comparison c{.accuracy = accuracy,
-               .completeness = completeness,
-               .chamfer = accuracy + completeness,
-               .chamfer_mean = (accuracy + completeness) / 2,
-               .f1_distance = detail::harmonic_mean(accuracy, completeness),
-               .accuracy_median = to_reference.median(),
-               .completeness_median = to_estimate.median(),
-               .accuracy_rmse = to_reference.rmse(),
-               .completeness_rmse = to_estimate.rmse(),
-               .hausdorff = std::max(to_reference.max(), to_estimate.max()),
-               .scores = {},
-               .n_estimate = to_reference.n_finite(),
-               .n_reference = to_estimate.n_finite(),
-               .n_dropped = to_reference.n_dropped() + to_estimate.n_dropped(),
-               .estimate_beyond = to_reference.share_beyond(),
-               .reference_beyond = to_estimate.share_beyond()};
-  for (const double t : tau) {
-    const double precision = to_reference.share_below(t);
-    const double recall = to_estimate.share_below(t);
-    c.scores.push_back({t, precision, recall, detail::harmonic_mean(precision, recall)});
-  }
-  return c;
-}
-
-/// Compares an estimated cloud with a reference: every metric of point clouds from one search.
-///
-/// Nothing is aligned. A reference sampled from a surface puts a floor under accuracy, see
-/// sample::mesh; mesh::compare has none.
-/// Throws undefined_error if either cloud has no finite point, argument_error if a tau is above
-/// max_distance.
-[[nodiscard]] inline comparison compare(const cloud& estimate,
-                                        const cloud& reference,
-                                        const compare_options& options = {}) {
-  const auto both = distances_both_ways(estimate, reference,
-                                        {.max_distance = options.max_distance,
-                                         .rule = options.rule,
-                                         .threads = options.threads,
-                                         .control = options.control});
-  return score(both.to_reference, both.to_estimate, options.tau);
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/select.hpp
-
-namespace aib::cloud {
-
-namespace detail {
-
-template <class T>
-std::vector<T> picked(const std::vector<T>& all, std::span<const std::size_t> index) {
-  std::vector<T> some;
-  if (all.empty()) return some;
-  some.reserve(index.size());
-  for (const std::size_t i : index) some.push_back(all[i]);
-  return some;
-}
-
-}  // namespace detail
-
-/// The points of some indices, in their order, with all that belongs to them.
-[[nodiscard]] inline cloud select(const cloud& c, std::span<const std::size_t> index) {
-  return {.origin = c.origin,
-          .points = detail::picked(c.points, index),
-          .normals = detail::picked(c.normals, index),
-          .colors = detail::picked(c.colors, index),
-          .labels = detail::picked(c.labels, index),
-          .warnings = c.warnings};
-}
-
-/// The points of whose index `keep(i)` is true.
-template <class Keep>
-[[nodiscard]] cloud select_where(const cloud& c, Keep&& keep) {
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    if (keep(i)) index.push_back(i);
-  }
-  return select(c, index);
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/crop.hpp
-
-namespace aib::cloud {
-
-/// A part of space.
-template <class Volume>
-concept volume = requires(const Volume& v, const Eigen::Vector3d& p) {
-  { v.contains(p) } -> std::same_as<bool>;
-};
-
-/// A box in any orientation, its faces included.
-struct oriented_box {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d world_from_box = Eigen::Matrix3d::Identity();  ///< rotation
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();                ///< along the box's own axes
-
-  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d from_centre = p - centre;
-    const Eigen::Vector3d in_box = world_from_box.transpose() * from_centre;
-    return (2 * in_box.array().abs() <= size.array()).all();
-  }
-};
-
-/// A prism over a polygon: the crop volume of Tanks and Temples, Open3D's SelectionPolygonVolume.
-///
-/// A point is inside where its coordinate on `axis` is in [low, high] and where the polygon, seen
-/// along that axis, lies around it by the even-odd rule.
-struct polygon_volume {
-  int axis = 2;  ///< 0, 1 or 2: the polygon is seen along it
-  double low = 0;
-  double high = 0;
-  std::vector<Eigen::Vector3d> polygon = {};  ///< at least three corners; `axis` plays no part
-
-  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
-    if (!(p[axis] >= low && p[axis] <= high)) return false;
-    const int u = axis == 0 ? 1 : 0;
-    const int v = axis == 2 ? 1 : 2;
-    bool inside = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Eigen::Vector3d& a = polygon[i];
-      const Eigen::Vector3d& b = polygon[(i + 1) % polygon.size()];
-      if ((a[v] < p[v]) == (b[v] < p[v])) continue;
-      if (a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u]) < p[u]) inside = !inside;
-    }
-    return inside;
-  }
-};
-
-/// The points of a cloud that lie in a volume. Points that are not finite lie in none.
-template <volume Volume>
-[[nodiscard]] cloud crop(const cloud& c, const Volume& volume) {
-  return select_where(c, [&](std::size_t i) { return volume.contains(c.position(i)); });
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/neighbours.hpp
-
-namespace aib::cloud {
-
-/// Another point and how far it is.
-struct neighbour {
-  std::size_t index;  ///< in the cloud
-  double distance;
-};
-
-/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
-/// Borrows nothing. For the one nearest point of millions see cloud::distances.
-class neighbours {
- public:
-  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
-  neighbours(const neighbours&) = delete;
-  neighbours& operator=(const neighbours&) = delete;
-
-  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
-  /// finds itself first.
-  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
-    k = std::min(k, points_.position.size());
-    std::vector<std::size_t> index(k);
-    std::vector<double> squared(k);
-    const Eigen::Vector3d local = p - points_.origin;
-    const std::size_t n =
-        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
-    std::vector<neighbour> found;
-    for (std::size_t i = 0; i < n; ++i) {
-      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
-    }
-    return found;
-  }
-
-  /// How many points lie nearer than `radius`.
-  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
-    const Eigen::Vector3d local = p - points_.origin;
-    counter inside{radius * radius};
-    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
-    return inside.n;
-  }
-
- private:
-  /// A result set, which is the same in every version of nanoflann.
-  struct counter {
-    double squared_radius;
-    std::size_t n = 0;
-
-    bool addPoint(double squared, std::size_t) {
-      n += squared < squared_radius ? 1 : 0;
-      return true;
-    }
-    [[nodiscard]] double worstDist() const { return squared_radius; }
-    [[nodiscard]] std::size_t size() const { return n; }
-    [[nodiscard]] bool full() const { return true; }
-  };
-
-  struct finite_positions {
-    Eigen::Vector3d origin;
-    std::vector<Eigen::Vector3d> position;
-    std::vector<std::size_t> source;
-
-    explicit finite_positions(const cloud& c) : origin(c.origin) {
-      for (std::size_t i = 0; i < c.size(); ++i) {
-        if (!is_finite(c.points[i])) continue;
-        position.push_back(c.points[i].cast<double>());
-        source.push_back(i);
-      }
-    }
-
-    // The interface that nanoflann asks for.
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-      return position[i][static_cast<Eigen::Index>(axis)];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
-
-  finite_positions points_;
-  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
-};
-
-}  // namespace aib::cloud
-
-// aib/cloud/normals.hpp
-
-namespace aib::cloud {
-
-struct normal_options {
-  std::size_t neighbours = 30;  ///< the point itself included
-  unsigned threads = 0;         ///< 0: all
-};
-
-/// The cloud with a normal for each point: the direction in which its nearest neighbours spread
-/// least. The sign is arbitrary. A point that is not finite, or has fewer than two others, gets
-/// (0, 0, 1).
-/// Source: Hoppe et al., SIGGRAPH 1992, section 3.2.
-[[nodiscard]] inline cloud with_normals(const cloud& c, const normal_options& options = {}) {
-  const neighbours search(c);
-  cloud result = c;
-  result.normals.assign(c.size(), Eigen::Vector3f(0, 0, 1));
-  for_each_chunk(c.size(), 1024, options.threads, {}, [&](const chunk& part) {
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      if (!is_finite(c.points[i])) continue;
-      const auto found = search.nearest(c.position(i), options.neighbours);
-      if (found.size() < 3) continue;
-      Eigen::Vector3d mean(0, 0, 0);
-      for (const neighbour& n : found) mean += c.points[n.index].cast<double>();
-      mean /= static_cast<double>(found.size());
-      Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-      for (const neighbour& n : found) {
-        const Eigen::Vector3d d = c.points[n.index].cast<double>() - mean;
-        covariance += d * d.transpose();
-      }
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-      const Eigen::Vector3d least = solver.eigenvectors().col(0);
-      result.normals[i] = least.cast<float>();
-    }
-  });
-  return result;
-}
-
-/// Agreement of normals: |cosine| of the angle to the normal of the nearest point of the other
-/// cloud.
-struct normal_consistency_result {
-  double estimate_mean;  ///< over the estimate ("NC1" of CUT3R)
-  double estimate_median;
-  double reference_mean;  ///< over the reference ("NC2")
-  double reference_median;
-};
-
-namespace detail {
-
-inline std::vector<double> normal_cosines(const cloud& from, const cloud& to, unsigned threads) {
-  const neighbours search(to);
-  std::vector<double> cosine(from.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& part) {
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      if (!is_finite(from.points[i])) continue;
-      const auto found = search.nearest(from.position(i), 1);
-      if (found.empty()) continue;
-      const Eigen::Vector3d a = from.normals[i].cast<double>();
-      const Eigen::Vector3d b = to.normals[found[0].index].cast<double>();
-      cosine[i] = std::abs(a.dot(b));
-    }
-  });
-  std::erase_if(cosine, [](double c) { return std::isnan(c); });
-  if (cosine.empty()) throw undefined_error("cloud::normal_consistency: no pair of finite points");
-  return cosine;
-}
-
-inline double mean_of(std::span<const double> values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
-}  // namespace detail
-
-/// How well the normals of two clouds agree, over each cloud. Signs play no part.
-/// Throws argument_error if a cloud has no normals, undefined_error if one has no finite point.
-/// Source: Wang et al., "Continuous 3D perception model with persistent state" (CUT3R), CVPR 2025.
-[[nodiscard]] inline normal_consistency_result normal_consistency(const cloud& estimate,
-                                                                  const cloud& reference,
-                                                                  unsigned threads = 0) {
-  for (const cloud* c : {&estimate, &reference}) {
-    if (c->normals.size() != c->size()) {
-      throw argument_error("cloud::normal_consistency: clouds with normals expected");
-    }
-  }
-  const auto e = detail::normal_cosines(estimate, reference, threads);
-  const auto r = detail::normal_cosines(reference, estimate, threads);
-  const std::span<const double> es(e), rs(r);
-  return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/outliers.hpp
-
-namespace aib::cloud {
-
-struct statistical_options {
-  std::size_t neighbours = 20;  ///< the point itself included
-  double ratio = 2;             ///< standard deviations above the mean that are kept
-  unsigned threads = 0;         ///< 0: all
-};
-
-struct radius_options {
-  double radius = 0;
-  std::size_t neighbours = 2;  ///< more points than this, the point itself included, are kept
-  unsigned threads = 0;        ///< 0: all
-};
-
-namespace detail {
-
-/// A number for each point, of NaN where the point is not finite.
-template <class Measure>
-std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& measure) {
-  std::vector<double> values(c.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(c.size(), 1024, threads, {}, [&](const chunk& part) {
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-      if (is_finite(c.points[i])) values[i] = measure(c.position(i));
-    }
-  });
-  return values;
-}
-
-}  // namespace detail
-
-/// The points whose mean distance to their nearest neighbours is not far above that of all: below
-/// mean + ratio * standard deviation (ddof 1). Duplicates, whose mean distance is 0, go as well.
-/// Source: Rusu et al., RAS 2008; the rule is Open3D's remove_statistical_outlier.
-[[nodiscard]] inline cloud without_statistical_outliers(const cloud& c,
-                                                        const statistical_options& options = {}) {
-  if (options.neighbours == 0 || !(options.ratio > 0)) {
-    throw argument_error("cloud::without_statistical_outliers: neighbours > 0, ratio > 0 expected");
-  }
-  const neighbours search(c);
-  const auto spread = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    const auto found = search.nearest(p, options.neighbours);
-    double sum = 0;
-    for (const neighbour& n : found) sum += n.distance;
-    return sum / static_cast<double>(found.size());
-  });
-  double sum = 0, squares = 0, n = 0;
-  for (const double s : spread) {
-    if (s > 0) sum += s, ++n;
-  }
-  const double mean = n > 0 ? sum / n : 0;
-  for (const double s : spread) {
-    if (s > 0) squares += (s - mean) * (s - mean);
-  }
-  const double limit = mean + options.ratio * (n > 1 ? std::sqrt(squares / (n - 1)) : 0);
-  return select_where(c, [&](std::size_t i) { return spread[i] > 0 && spread[i] < limit; });
-}
-
-/// The points that have more than so many points, themselves included, nearer than a radius.
-[[nodiscard]] inline cloud without_radius_outliers(const cloud& c, const radius_options& options) {
-  if (!(options.radius > 0)) {
-    throw argument_error(
-        message("cloud::without_radius_outliers: radius > 0 expected, found ", options.radius));
-  }
-  const neighbours search(c);
-  const auto count = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    return static_cast<double>(search.count_within(p, options.radius));
-  });
-  const auto least = static_cast<double>(options.neighbours);
-  return select_where(c, [&](std::size_t i) { return count[i] > least; });
-}
-
-/// n points chosen at random, each subset equally likely, in their order; all where there are
-/// fewer.
-[[nodiscard]] inline cloud random_subset(const cloud& c, std::size_t n, std::uint64_t seed = 1) {
-  std::vector<std::size_t> index(c.size());
-  std::iota(index.begin(), index.end(), std::size_t{0});
-  n = std::min(n, index.size());
-  random_engine random(seed);
-  for (std::size_t i = 0; i < n; ++i)
-    std::swap(index[i], index[i + random.below(index.size() - i)]);
-  index.resize(n);
-  std::sort(index.begin(), index.end());
-  return select(c, index);
-}
-
-}  // namespace aib::cloud
-
-// aib/cloud/transform.hpp
-
-namespace aib::cloud {
-
-/// The cloud in frame b. Points are moved in double and counted from their new natural origin,
-/// normals are turned.
-[[nodiscard]] inline cloud operator*(const math::sim3& b_from_a, const cloud& in_a) {
-  placed_points placed =
-      place(in_a.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
-  cloud in_b = in_a;
-  in_b.origin = placed.origin;
-  in_b.points = std::move(placed.points);
-  const Eigen::Matrix3f rotation = b_from_a.rotation.cast<float>();
-  for (Eigen::Vector3f& normal : in_b.normals) normal = (rotation * normal).eval();
-  return in_b;
-}
-
-[[nodiscard]] inline cloud operator*(const math::rigid3& b_from_a, const cloud& in_a) {
-  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
-}
-
-}  // namespace aib::cloud
-
-// aib/mesh/mesh.hpp
-
-namespace aib::mesh {
-
-using triangle = std::array<std::uint32_t, 3>;
-
-/// Triangles over shared vertices. A vertex lies at `origin + vertices[i]`, as a point of a cloud
-/// does.
-///
-/// `labels` is empty or one a triangle; `label_names[k]` names label k where the source does.
-struct mesh {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> vertices = {};
-  std::vector<triangle> triangles = {};
-  std::vector<std::uint32_t> labels = {};
-  std::vector<std::string> label_names = {};
-  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
-
-  [[nodiscard]] bool empty() const { return triangles.empty(); }
-  [[nodiscard]] Eigen::Vector3d position(std::size_t vertex) const {
-    return origin + vertices[vertex].cast<double>();
-  }
-};
-
-}  // namespace aib::mesh
-
-// aib/mesh/distances.hpp
-
-namespace aib::mesh {
-
-/// The finite triangles of a mesh under a search tree, for many questions.
-class surface_index {
- public:
-  /// Throws undefined_error if no triangle is finite.
-  explicit surface_index(const mesh& surface, unsigned threads = 0, const control& control = {});
-
-  [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
-  [[nodiscard]] const search::triangle_tree& tree() const { return tree_; }
-
-  /// Index in the mesh of the triangle at a place of the tree.
-  [[nodiscard]] std::size_t triangle_at(std::uint32_t place) const {
-    return kept_[tree_.index(place)];
-  }
-
- private:
-  std::vector<search::corners> finite_triangles(const mesh& surface);
-  static std::vector<Eigen::Vector3f> first_corners(std::span<const search::corners> triangles);
-
-  Eigen::Vector3d origin_;
-  std::vector<std::size_t> kept_;
-  std::vector<search::corners> corners_;
-  search::triangle_tree tree_;
-};
-
-/// Where on a mesh each point of a cloud is nearest.
-struct closest_points {
-  std::vector<float> distance;          ///< NaN for a point that is not finite
-  std::vector<std::uint32_t> triangle;  ///< index in the mesh; ~0 for a point that is not finite
-};
-
-/// The nearest triangle of each point, exact.
-/// Throws undefined_error if the cloud has no finite point.
-closest_points closest(const cloud::cloud& points,
-                       const surface_index& surface,
-                       unsigned threads = 0,
-                       const control& control = {});
-
-/// Distances from the points of a cloud to the surface of a mesh: exact point-to-triangle
-/// distances, without the floor that sampling the mesh would put under them.
-///
-/// Throws undefined_error if the cloud has no finite point or the mesh no finite triangle.
-[[nodiscard]] cloud::distances distances(const cloud::cloud& points,
-                                         const mesh& surface,
-                                         const cloud::distance_options& options = {});
-
-/// Compares an estimated cloud with a reference mesh: accuracy to the surface itself, completeness
-/// and recall by samples of it (sample::mesh).
-[[nodiscard]] cloud::comparison compare(const cloud::cloud& estimate,
-                                        const mesh& reference,
-                                        const cloud::cloud& samples,
-                                        const cloud::compare_options& options = {});
-
-inline std::vector<search::corners> surface_index::finite_triangles(const mesh& surface) {
-  std::vector<search::corners> finite;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3f corner[] = {surface.vertices[a], surface.vertices[b],
-                                      surface.vertices[c]};
-    if (!std::all_of(corner, corner + 3, cloud::is_finite)) continue;
-    finite.emplace_back(corner[0], corner[1], corner[2]);
-    kept_.push_back(t);
-  }
-  if (finite.empty()) {
-    throw undefined_error(
-        message("mesh::distances: no finite triangle (", surface.triangles.size(), " triangles)"));
-  }
-  return finite;
-}
-
-inline std::vector<Eigen::Vector3f> surface_index::first_corners(
-    std::span<const search::corners> triangles) {
-  std::vector<Eigen::Vector3f> first;
-  first.reserve(triangles.size());
-  for (const search::corners& t : triangles) first.push_back(t.corner<float>(0));
-  return first;
-}
-
-inline surface_index::surface_index(const mesh& surface, unsigned threads, const control& control)
-    : origin_(surface.origin),
-      corners_(finite_triangles(surface)),
-      tree_(corners_, search::common_curve(first_corners(corners_), {}), threads, control) {}
-
-inline closest_points closest(const cloud::cloud& points,
-                              const surface_index& surface,
-                              unsigned threads,
-                              const control& control) {
-  const cloud::finite_points from(points, surface.origin());
-  cloud::detail::demand_points("mesh::distances", "estimated", from);
-  if (threads == 0) threads = available_threads();
-  const search::curve order = search::common_curve(from.points(), {});
-  const auto sorted = search::sort_along(from.points(), order, threads, control);
-  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
-  closest_points found{std::vector<float>(points.size(), std::numeric_limits<float>::quiet_NaN()),
-                       std::vector<std::uint32_t>(points.size(), ~std::uint32_t{0})};
-  for_each_chunk(sorted.size(), 4096, threads, control, [&](const chunk& c) {
-    std::uint32_t near = 0;
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const std::size_t p = sorted[i] & mask;
-      const auto best = surface.tree().nearest(from.points()[p], near);
-      near = best.place;
-      found.distance[from.source_index(p)] = static_cast<float>(std::sqrt(best.squared));
-      found.triangle[from.source_index(p)] =
-          static_cast<std::uint32_t>(surface.triangle_at(best.place));
-    }
-  });
-  return found;
-}
-
-inline cloud::distances distances(const cloud::cloud& points,
-                                  const mesh& surface,
-                                  const cloud::distance_options& options) {
-  const surface_index index(surface, options.threads, options.control);
-  auto found = closest(points, index, options.threads, options.control);
-  return cloud::distances(std::move(found.distance), options);
-}
-
-inline cloud::comparison compare(const cloud::cloud& estimate,
-                                 const mesh& reference,
-                                 const cloud::cloud& samples,
-                                 const cloud::compare_options& options) {
-  const cloud::distance_options how{.max_distance = options.max_distance,
-                                    .rule = options.rule,
-                                    .threads = options.threads,
-                                    .control = options.control};
-  return cloud::score(distances(estimate, reference, how), cloud::distances(samples, estimate, how),
-                      options.tau);
-}
-
-}  // namespace aib::mesh
-
-// aib/mesh/surface.hpp
-
-namespace aib::mesh {
-
-/// Corners of a triangle, counted from the origin of its mesh.
-[[nodiscard]] inline std::array<Eigen::Vector3d, 3> corners(const mesh& m, std::size_t t) {
-  const auto& [a, b, c] = m.triangles[t];
-  return {m.vertices[a].cast<double>(), m.vertices[b].cast<double>(), m.vertices[c].cast<double>()};
-}
-
-/// Area of a triangle; 0 where a corner is not finite.
-[[nodiscard]] inline double area(const mesh& m, std::size_t t) {
-  const auto [a, b, c] = corners(m, t);
-  const Eigen::Vector3d ab = b - a;
-  const Eigen::Vector3d ac = c - a;
-  const double twice = ab.cross(ac).norm();
-  return std::isfinite(twice) ? twice / 2 : 0;
-}
-
-/// Area of all triangles.
-[[nodiscard]] inline double area(const mesh& m) {
-  double total = 0;
-  for (std::size_t t = 0; t < m.triangles.size(); ++t) total += area(m, t);
-  return total;
-}
-
-}  // namespace aib::mesh
-
-// aib/mesh/transform.hpp
-
-namespace aib::mesh {
-
-/// The mesh in frame b. Vertices are moved in double and counted from their new natural origin.
-[[nodiscard]] inline mesh operator*(const math::sim3& b_from_a, const mesh& in_a) {
-  cloud::placed_points placed = cloud::place(
-      in_a.vertices.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
-  mesh in_b = in_a;
-  in_b.origin = placed.origin;
-  in_b.vertices = std::move(placed.points);
-  return in_b;
-}
-
-[[nodiscard]] inline mesh operator*(const math::rigid3& b_from_a, const mesh& in_a) {
-  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
-}
-
-}  // namespace aib::mesh
-
-// aib/align/outliers.hpp
-
-namespace aib::align {
-
-struct outlier_options {
-  std::optional<double> factor = {};    ///< of the median distance, e.g. 3
-  std::optional<double> distance = {};  ///< absolute, unit of the positions
-};
-
-/// Distances of positions from their component-wise median, and those that are kept.
-struct outlier_split {
-  Eigen::Vector3d median_position;
-  double median_distance;
-  std::vector<std::size_t> kept;     ///< distance <= every limit that is set
-  std::vector<std::size_t> removed;  ///< ascending, as kept
-};
-
-/// One pass. Throws undefined_error if there is no position.
-inline outlier_split split_outliers(std::span<const Eigen::Vector3d> positions,
-                                    const outlier_options& options) {
-  outlier_split out;
-  std::vector<double> values(positions.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < positions.size(); ++i) values[i] = positions[i][axis];
-    out.median_position[axis] = stats::quantile_in_place<double>(values, 0.5);
-  }
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& p : positions) distances.push_back((p - out.median_position).norm());
-  out.median_distance = stats::median<double>(distances);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const double limit = std::min(options.factor ? *options.factor * out.median_distance : infinity,
-                                options.distance.value_or(infinity));
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    (distances[i] <= limit ? out.kept : out.removed).push_back(i);
-  return out;
-}
-
-}  // namespace aib::align
-
-// aib/align/spread.hpp
-
-namespace aib::align {
-
-namespace detail {
-
-/// Turns columns a and b of the rows until they are orthogonal; whether they were not.
-inline bool orthogonalize(std::vector<Eigen::Vector3d>& rows, Eigen::Matrix3d& axes, int a, int b) {
-  double aa = 0, bb = 0, ab = 0;
-  for (const Eigen::Vector3d& row : rows) {
-    aa += row[a] * row[a];
-    bb += row[b] * row[b];
-    ab += row[a] * row[b];
-  }
-  if (!(std::abs(ab) > 1e-15 * std::sqrt(aa) * std::sqrt(bb))) return false;
-  const double slope = (bb - aa) / (2 * ab);
-  const double tangent = std::copysign(1 / (std::abs(slope) + std::hypot(1, slope)), slope);
-  const double cosine = 1 / std::hypot(1, tangent), sine = cosine * tangent;
-  const auto turn = [&](auto&& row) {
-    const double from_a = row[a], from_b = row[b];
-    row[a] = cosine * from_a - sine * from_b;
-    row[b] = sine * from_a + cosine * from_b;
-  };
-  for (Eigen::Vector3d& row : rows) turn(row);
-  for (int r = 0; r < 3; ++r) turn(axes.row(r));
-  return true;
-}
-
-inline std::string direction_text(const Eigen::Vector3d& v) {
-  const auto digits = [](double x) { return std::round(x * 1000) / 1000 + 0.0; };  // no -0
-  return message("(", digits(v[0]), ", ", digits(v[1]), ", ", digits(v[2]), ")");
-}
-
-}  // namespace detail
-
-/// How points lie about their mean: along which axes, how far.
-struct spread {
-  Eigen::Vector3d mean;
-  Eigen::Matrix3d axes;             ///< columns, longest first
-  Eigen::Vector3d singular_values;  ///< of the centred points, descending; square sums of the axes
-  double rounding;                  ///< singular value that rounding of the coordinates can give
-
-  /// Second singular value over the first: 0 for points on a line or in one place.
-  [[nodiscard]] double ratio() const {
-    if (!(singular_values[0] > rounding) || !(singular_values[1] > rounding)) return 0;
-    return singular_values[1] / singular_values[0];
-  }
-  /// First singular value over the second: how much worse the turn about the long axis is known.
-  [[nodiscard]] double condition() const {
-    return ratio() > 0 ? 1 / ratio() : std::numeric_limits<double>::infinity();
-  }
-};
-
-/// Of the centred points themselves, not of their covariance: a square would hide everything below
-/// 1e-8. Throws argument_error if a point is not finite, undefined_error if there is none.
-/// Source: Hestenes, "Inversion of matrices by biorthogonalization", 1958 (one-sided Jacobi).
-inline spread spread_of(std::span<const Eigen::Vector3d> points) {
-  if (points.empty()) throw undefined_error("align: no points");
-  const auto n = static_cast<double>(points.size());
-  spread out{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 0};
-  double largest = 0;
-  for (const Eigen::Vector3d& p : points) {
-    if (!p.allFinite()) throw argument_error("align: a point is not finite");
-    out.mean += p / n;
-    largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  }
-  out.rounding = 4 * std::numeric_limits<double>::epsilon() * largest * std::sqrt(n);
-  std::vector<Eigen::Vector3d> rows;
-  for (const Eigen::Vector3d& p : points) rows.push_back(p - out.mean);
-  bool turned = true;
-  for (int sweep = 0; sweep < 30 && turned; ++sweep) {
-    turned = false;
-    for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
-      turned = detail::orthogonalize(rows, out.axes, a, b) || turned;
-  }
-  for (const Eigen::Vector3d& row : rows) out.singular_values += row.cwiseAbs2();
-  out.singular_values = out.singular_values.cwiseSqrt();
-  for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
-    if (out.singular_values[a] >= out.singular_values[b]) continue;
-    std::swap(out.singular_values[a], out.singular_values[b]);
-    out.axes.col(a).swap(out.axes.col(b));
-  }
-  for (int axis = 0; axis < 3; ++axis) {  // the largest component points forward
-    Eigen::Index at = 0;
-    out.axes.col(axis).cwiseAbs().maxCoeff(&at);
-    if (out.axes(at, axis) < 0) out.axes.col(axis) *= -1;
-  }
-  return out;
-}
-
-}  // namespace aib::align
-
-// aib/align/umeyama.hpp
-
-namespace aib::align {
-
-/// When points are too close to a line to tell a rotation.
-enum class rank_rule {
-  relative,  ///< second singular value of either side's positions below 1e-10 of the first
-  evo,       ///< fewer than two singular values of the covariance above 2.2e-16, whatever the unit
-};
-
-/// A second singular value of this share of the first is refused.
-inline constexpr double refused_ratio = 1e-10;
-
-/// A second singular value of this share of the first is worth a warning.
-inline constexpr double doubted_ratio = 1e-2;
-
-struct umeyama_options {
-  bool scale = true;  ///< false: rigid, scale 1
-  rank_rule convention = rank_rule::relative;
-};
-
-namespace detail {
-
-/// The proper rotation R that maximises tr(R^T matrix).
-/// Source: Umeyama, "Least-squares estimation of transformation parameters between two point
-/// patterns", PAMI 1991, Eq. (40)-(43); Markley 1988.
-struct best_rotation {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d signed_singular_values;
-
-  explicit best_rotation(const Eigen::Matrix3d& matrix) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d sign(1, 1, 1);
-    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-    rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-    signed_singular_values = svd.singularValues().cwiseProduct(sign);
-  }
-};
-
-/// Two sets of points about their means: covariance 1/n sum (y - my)(x - mx)^T, variance of x.
-struct paired_moments {
-  Eigen::Vector3d estimate_mean = Eigen::Vector3d::Zero(), reference_mean = estimate_mean;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double estimate_variance = 0;
-
-  paired_moments(std::span<const Eigen::Vector3d> estimate,
-                 std::span<const Eigen::Vector3d> reference) {
-    const auto n = static_cast<double>(estimate.size());
-    for (const Eigen::Vector3d& x : estimate) estimate_mean += x / n;
-    for (const Eigen::Vector3d& y : reference) reference_mean += y / n;
-    for (std::size_t i = 0; i < estimate.size(); ++i) {
-      const Eigen::Vector3d x = estimate[i] - estimate_mean, y = reference[i] - reference_mean;
-      covariance += y * x.transpose() / n;
-      estimate_variance += x.squaredNorm() / n;
-    }
-  }
-
-  /// The transform with this rotation and scale that moves mean to mean.
-  [[nodiscard]] math::sim3 centred(double scale, const Eigen::Matrix3d& rotation) const {
-    return {scale, rotation, reference_mean - scale * (rotation * estimate_mean)};
-  }
-};
-
-inline void check_pairs(std::string_view who, std::size_t n_estimate, std::size_t n_reference) {
-  if (n_estimate != n_reference) {
-    throw argument_error(message(who, ": as many estimated as reference points expected, found ",
-                                 n_estimate, " and ", n_reference));
-  }
-  if (n_estimate == 0) throw undefined_error(message(who, ": no points"));
-}
-
-inline void refuse_a_line(std::string_view who, std::string_view side, const spread& s) {
-  if (s.ratio() >= refused_ratio) return;
-  const Eigen::Vector3d axis = s.axes.col(0);
-  if (!(s.singular_values[0] > s.rounding))
-    throw undefined_error(message(who, ": the positions of the ", side, " are all in one place"));
-  throw undefined_error(message(who, ": the positions of the ", side,
-                                " lie on a line: the turn about ", direction_text(axis),
-                                " is free"));
-}
-
-inline void refuse_as_evo(const Eigen::Matrix3d& covariance) {
-  const Eigen::Vector3d d = Eigen::JacobiSVD<Eigen::Matrix3d>(covariance).singularValues();
-  if (d[1] > std::numeric_limits<double>::epsilon()) return;
-  throw undefined_error(message("umeyama: degenerate covariance rank, singular values ", d[0], ", ",
-                                d[1], ", ", d[2]));
-}
-
-}  // namespace detail
-
-/// The similarity ref_from_est that minimises sum |ref - (s R est + t)|^2 over paired points.
-///
-/// estimate, reference   n x 3 each, any units
-///
-/// The rotation is proper also for mirrored points. Throws argument_error if the lengths differ or
-/// a point is not finite, undefined_error if the positions of a side lie on a line (see rank_rule).
-/// Source: Umeyama, PAMI 1991, Eq. (40)-(43).
-inline math::sim3 umeyama(std::span<const Eigen::Vector3d> estimate,
-                          std::span<const Eigen::Vector3d> reference,
-                          const umeyama_options& options = {}) {
-  detail::check_pairs("umeyama", estimate.size(), reference.size());
-  const spread estimate_spread = spread_of(estimate), reference_spread = spread_of(reference);
-  const detail::paired_moments m(estimate, reference);
-  if (options.convention == rank_rule::evo) {
-    detail::refuse_as_evo(m.covariance);
-  } else {
-    detail::refuse_a_line("umeyama", "estimate", estimate_spread);
-    detail::refuse_a_line("umeyama", "reference", reference_spread);
-  }
-  const detail::best_rotation best(m.covariance);
-  const double scale =
-      options.scale ? best.signed_singular_values.sum() / m.estimate_variance : 1.0;
-  return m.centred(scale, best.rotation);
-}
-
-/// As above, from any ranges of points.
-template <point_range Estimate, point_range Reference>
-math::sim3 umeyama(const Estimate& estimate,
-                   const Reference& reference,
-                   const umeyama_options& options = {}) {
-  const auto vectors = [](const auto& range) {
-    std::vector<Eigen::Vector3d> out;
-    out.reserve(std::ranges::size(range));
-    for (const auto& p : range) out.push_back(as_vector<double>(p));
-    return out;
-  };
-  const std::vector<Eigen::Vector3d> e = vectors(estimate), r = vectors(reference);
-  return umeyama(std::span<const Eigen::Vector3d>(e), std::span<const Eigen::Vector3d>(r), options);
-}
-
-}  // namespace aib::align
-
-// aib/align/pose_fit.hpp
-
-namespace aib::align {
-
-/// What an alignment may change.
-enum class align_mode {
-  sim3,   ///< rotation, translation, scale
-  se3,    ///< rotation, translation
-  yaw,    ///< the turn about the vertical, translation: both worlds know where down is
-  scale,  ///< scale alone, as evo's --correct_scale without --align
-  first,  ///< the rigid motion that lays the first pose of the one on that of the other
-};
-
-struct fit_options {
-  align_mode mode = align_mode::sim3;
-  double rotation_weight = 0;  ///< sim3, se3: > 0: orientations count, a radian as this length
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw: the vertical of both worlds
-  rank_rule convention = rank_rule::relative;
-};
-
-/// Paired world_from_camera poses, and fits of ref_from_est to some of them.
-class pose_fit {
- public:
-  /// estimate, reference   as long, finite
-  pose_fit(std::span<const math::rigid3> estimate,
-           std::span<const math::rigid3> reference,
-           const fit_options& options)
-      : estimate_(estimate), reference_(reference), options_(options) {}
-
-  /// Throws undefined_error if the chosen poses do not tell the transform.
-  [[nodiscard]] math::sim3 operator()(std::span<const std::size_t> chosen) const;
-
-  /// Distance that a transform leaves between the positions of a pose.
-  [[nodiscard]] double residual(const math::sim3& ref_from_est, std::size_t i) const {
-    return (ref_from_est * estimate_[i].translation - reference_[i].translation).norm();
-  }
-
-  [[nodiscard]] std::vector<Eigen::Vector3d> estimate(std::span<const std::size_t> chosen) const {
-    return positions(estimate_, chosen);
-  }
-  [[nodiscard]] std::vector<Eigen::Vector3d> reference(std::span<const std::size_t> chosen) const {
-    return positions(reference_, chosen);
-  }
-
- private:
-  static std::vector<Eigen::Vector3d> positions(std::span<const math::rigid3> poses,
-                                                std::span<const std::size_t> chosen) {
-    std::vector<Eigen::Vector3d> out;
-    for (const std::size_t i : chosen) out.push_back(poses[i].translation);
-    return out;
-  }
-  [[nodiscard]] math::sim3 with_rotations(std::span<const std::size_t> chosen) const;
-  [[nodiscard]] math::sim3 about_vertical(std::span<const std::size_t> chosen) const;
-
-  std::span<const math::rigid3> estimate_, reference_;
-  fit_options options_;
-};
-
-inline math::sim3 pose_fit::operator()(std::span<const std::size_t> chosen) const {
-  if (chosen.empty()) throw undefined_error("align: no pose");
-  if (options_.mode == align_mode::first) {
-    const math::rigid3 moved = reference_[chosen.front()] * estimate_[chosen.front()].inverse();
-    return {1, moved.rotation, moved.translation};
-  }
-  if (options_.mode == align_mode::yaw) return about_vertical(chosen);
-  const bool turns = options_.mode != align_mode::scale;
-  if (turns && options_.rotation_weight > 0) return with_rotations(chosen);
-  const math::sim3 fitted =
-      umeyama(estimate(chosen), reference(chosen),
-              {.scale = options_.mode != align_mode::se3, .convention = options_.convention});
-  return turns ? fitted : math::sim3{.scale = fitted.scale};
-}
-
-/// Minimises sum |y - (s R x + t)|^2 + w^2 |angle(R Rx, Ry)|^2 (chordal), rotation and scale in
-/// turns. Orientations tell what positions on a line leave free.
-inline math::sim3 pose_fit::with_rotations(std::span<const std::size_t> chosen) const {
-  const std::vector<Eigen::Vector3d> x = estimate(chosen), y = reference(chosen);
-  const detail::paired_moments m(x, y);
-  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  for (const std::size_t i : chosen)
-    turned += reference_[i].rotation * estimate_[i].rotation.transpose();
-  const double w = options_.rotation_weight;
-  turned *= w * w / (2 * static_cast<double>(chosen.size()));
-  if (options_.mode == align_mode::se3)
-    return m.centred(1, detail::best_rotation(m.covariance + turned).rotation);
-  if (const spread s = spread_of(x); !(s.singular_values[0] > s.rounding))
-    throw undefined_error("align: the positions of the estimate are all in one place: no scale");
-  double scale = 1;
-  Eigen::Matrix3d rotation = detail::best_rotation(turned).rotation;
-  for (int round = 0; round < 100; ++round) {
-    const double before = scale;
-    scale = (rotation.transpose() * m.covariance).trace() / m.estimate_variance;
-    rotation = detail::best_rotation(scale * m.covariance + turned).rotation;
-    if (std::abs(scale - before) <= 1e-15 * std::abs(scale)) break;
-  }
-  if (!(scale > 0)) {
-    throw undefined_error(
-        message("align: positions and orientations contradict each other, scale ", scale));
-  }
-  return m.centred(scale, rotation);
-}
-
-/// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation", IROS 2018,
-/// Sec. III-C.
-inline math::sim3 pose_fit::about_vertical(std::span<const std::size_t> chosen) const {
-  const Eigen::Vector3d up = options_.up.normalized();
-  if (!up.allFinite()) throw argument_error("align: up has no direction");
-  const detail::paired_moments m(estimate(chosen), reference(chosen));
-  const Eigen::Matrix3d& c = m.covariance;
-  // sum y . R x = cos a tr((I - up up^T) C) + sin a (up . sum x cross y) + constant
-  const Eigen::Vector3d cross(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
-  const double cosine = c.trace() - up.dot(c * up), sine = up.dot(cross);
-  if (!(std::hypot(cosine, sine) > refused_ratio * c.norm()))
-    throw undefined_error("align: the positions leave the turn about the vertical free");
-  const Eigen::Vector3d turn = std::atan2(sine, cosine) * up;
-  return m.centred(1, math::rotation_from(turn));
-}
-
-}  // namespace aib::align
-
-// aib/align/ransac.hpp
-
-namespace aib::align {
-
-struct ransac_options {
-  double distance = 0;  ///< inliers lie within it, unit of the reference; 0: told from the data
-  std::size_t iterations = 1000;
-  std::uint64_t seed = 1;
-};
-
-/// The poses among `chosen` that agree with one transform, ascending.
-///
-/// With `distance` the transform of three poses that most poses agree with (RANSAC); without, the
-/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations.
-/// Then fit and inliers in turns until they no longer change.
-/// Throws undefined_error if no three poses tell a transform.
-/// Source: Fischler and Bolles, CACM 1981; Rousseeuw, "Least median of squares regression", 1984.
-inline std::vector<std::size_t> consensus(const pose_fit& fit,
-                                          std::span<const std::size_t> chosen,
-                                          const ransac_options& options = {}) {
-  const auto residuals = [&](const math::sim3& ref_from_est) {
-    std::vector<double> out;
-    for (const std::size_t i : chosen) out.push_back(fit.residual(ref_from_est, i));
-    return out;
-  };
-  const auto cost = [&](std::vector<double> r) {
-    if (options.distance > 0) {
-      return -static_cast<double>(
-          std::count_if(r.begin(), r.end(), [&](double d) { return d <= options.distance; }));
-    }
-    return stats::quantile_in_place<double>(r, 0.5, stats::quantile_rule::lower);
-  };
-  random_engine random(options.seed);
-  math::sim3 best;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < options.iterations && chosen.size() >= 3; ++k) {
-    std::array<std::size_t, 3> sample;
-    for (std::size_t& s : sample) s = chosen[random.below(chosen.size())];
-    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
-    try {
-      const math::sim3 candidate = fit(sample);
-      const double c = cost(residuals(candidate));
-      if (c < least) {
-        least = c;
-        best = candidate;
-      }
-    } catch (const undefined_error&) {  // three poses on a line
-    }
-  }
-  if (!std::isfinite(least))
-    throw undefined_error("align: robust: no three poses tell a transform");
-  const double n = static_cast<double>(chosen.size());
-  const double sigma = 1.4826 * (1 + 5 / std::max(1.0, n - 3)) * least;  // Rousseeuw, Eq. (1.3)
-  const double limit = options.distance > 0 ? options.distance : 2.5 * sigma;
-  std::vector<std::size_t> inliers;
-  for (int round = 0; round < 20; ++round) {
-    std::vector<std::size_t> next;
-    for (const std::size_t i : chosen) {
-      if (fit.residual(best, i) <= limit) next.push_back(i);
-    }
-    if (next == inliers || next.size() < 3) break;
-    inliers = std::move(next);
-    best = fit(inliers);
-  }
-  return inliers;
-}
-
-}  // namespace aib::align
-
-// aib/align/trajectory.hpp
-
-namespace aib::align {
-
-struct trajectory_options {
-  fit_options fit = {};
-  std::size_t n = 0;              ///< fit to the first n registered frames; 0: to all
-  outlier_options outliers = {};  ///< nothing is removed unless asked
-  std::optional<ransac_options> robust = {};
-  double stand_off = 10;  ///< distance at which the error of a turn is foretold, reference's unit
-};
-
-/// How one trajectory lies in the world of another.
-struct alignment {
-  math::sim3 transform;               ///< ref_from_est
-  std::size_t n_inliers;              ///< frames that the fit used
-  std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
-  double rmse;                        ///< of the inliers' positions, unit of the reference
-  double condition;   ///< first over second singular value of the positions, of the worse side
-  double turn_deg;    ///< expected error of the turn about the long axis of the positions, <= 90
-  double turn_error;  ///< what that moves a point `stand_off` away from the axis
-  std::vector<std::string> warnings;
-};
-
-/// Fits ref_from_est to the positions (and, if asked, orientations) of associated trajectories.
-/// Frames without a finite pose are passed over.
-///
-/// Throws argument_error if the trajectories are not associated, undefined_error if the frames do
-/// not tell the transform: the message names what is free.
-alignment trajectory(const pose::trajectory& estimate,
-                     const pose::trajectory& reference,
-                     const trajectory_options& options = {});
-
-namespace detail {
-
-/// Distances from the long axis of the positions, root of their square sum.
-inline double lever(const spread& s) {
-  return std::hypot(s.singular_values[1], s.singular_values[2]);
-}
-
-/// Standard deviation of the turn about the long axis, radians, at most a right angle: the residual
-/// of a coordinate over the lever.
-inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t parameters) {
-  constexpr double right_angle = std::numbers::pi / 2;
-  const double freedom = 3 * static_cast<double>(n) - static_cast<double>(parameters);
-  if (!(freedom > 0) || !(lever > 0)) return right_angle;
-  return std::min(right_angle, std::sqrt(sse / freedom) / lever);
-}
-
-/// The scale that the median distances from the median positions tell.
-inline double scale_of_medians(std::span<const Eigen::Vector3d> estimate,
-                               std::span<const Eigen::Vector3d> reference) {
-  return split_outliers(reference, {}).median_distance /
-         split_outliers(estimate, {}).median_distance;
-}
-
-}  // namespace detail
-
-inline alignment trajectory(const pose::trajectory& estimate,
-                            const pose::trajectory& reference,
-                            const trajectory_options& options) {
-  const pose::registered_frames frames = pose::registered("align::trajectory", estimate, reference);
-  const pose_fit fit(frames.estimate, frames.reference, options.fit);
-  std::vector<std::size_t> offered(frames.index.size());
-  if (options.n > 0) offered.resize(std::min(options.n, offered.size()));
-  std::iota(offered.begin(), offered.end(), std::size_t{0});
-  if (offered.empty()) {
-    throw undefined_error(message("align::trajectory: none of ", estimate.size(),
-                                  " frames has a finite pose on both sides"));
-  }
-  std::vector<std::size_t> used = options.outliers.factor || options.outliers.distance
-                                      ? split_outliers(fit.estimate(offered), options.outliers).kept
-                                      : offered;
-  if (options.robust) used = consensus(fit, used, *options.robust);
-
-  alignment out{.transform = fit(used),
-                .n_inliers = used.size(),
-                .outliers = {},
-                .rmse = 0,
-                .condition = 1,
-                .turn_deg = 0,
-                .turn_error = 0,
-                .warnings = {}};
-  std::vector<std::size_t> left_out;
-  std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
-                      std::back_inserter(left_out));
-  for (const std::size_t i : left_out) out.outliers.push_back(frames.index[i]);
-  double sse = 0;
-  for (const std::size_t i : used) {
-    const double r = fit.residual(out.transform, i);
-    sse += r * r;
-  }
-  out.rmse = std::sqrt(sse / static_cast<double>(used.size()));
-  if (options.fit.mode == align_mode::first) return out;
-
-  const std::vector<Eigen::Vector3d> x = fit.estimate(used), y = fit.reference(used);
-  const spread s = spread_of(x), s_reference = spread_of(y);
-  out.condition = std::max(s.condition(), s_reference.condition());
-  const bool turns = options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::se3;
-  if (turns && !(options.fit.rotation_weight > 0)) {
-    // Of both sides the thinner: noise widens a line, it never narrows one.
-    const double turn = detail::turn_sigma(
-        std::min(out.transform.scale * detail::lever(s), detail::lever(s_reference)), sse,
-        used.size(), options.fit.mode == align_mode::sim3 ? 7 : 6);
-    out.turn_deg = math::degrees(turn);
-    out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
-    if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
-      const Eigen::Vector3d axis = s_reference.axes.col(0);
-      out.warnings.push_back(message(
-          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
-          "(condition ", std::round(out.condition), "), is known to +-",
-          std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
-          " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
-    }
-  }
-  if (options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::scale) {
-    const double expected = detail::scale_of_medians(x, y);
-    const double off = out.transform.scale / expected;
-    if (std::isfinite(expected) && (off < 0.5 || off > 2)) {
-      out.warnings.push_back(message("the fitted scale ", out.transform.scale, " is far from the ",
-                                     expected, " of the median distances: outliers rule the fit; ",
-                                     "see outlier_factor and robust"));
-    }
-  }
-  return out;
-}
-
-}  // namespace aib::align
-
-// aib/align/batches.hpp
-
-namespace aib::align {
-
-struct batches_options {
-  std::size_t size = 200;               ///< frames of a batch; the last has what is left
-  std::vector<std::size_t> sizes = {};  ///< frames of each batch instead, in order
-  trajectory_options align = {};        ///< of each batch
-};
-
-/// A batch of frames [begin, end) and how it lies in the world of the reference.
-struct batch_alignment {
-  std::size_t begin;
-  std::size_t end;
-  std::optional<alignment> fit;     ///< nothing where the frames do not tell the transform
-  std::string degenerate;           ///< then why
-  std::optional<double> half_rmse;  ///< of every other inlier, fitted to the others
-  std::optional<double> seam;  ///< jump of the position error from the batch before to this one
-};
-
-/// Aligns each of the sequential batches of associated trajectories on its own. A batch whose
-/// frames do not tell its transform is named, not guessed.
-///
-/// Throws argument_error if the trajectories are not associated or the sizes do not add up to their
-/// length.
-std::vector<batch_alignment> batches(const pose::trajectory& estimate,
-                                     const pose::trajectory& reference,
-                                     const batches_options& options = {});
-
-/// Each batch moved by its transform; the poses of degenerate batches become NaN, unregistered.
-pose::trajectory transformed(const std::vector<batch_alignment>& batches,
-                             pose::trajectory estimate);
-
-namespace detail {
-
-inline std::vector<std::size_t> batch_sizes(std::size_t frames, const batches_options& options) {
-  if (!options.sizes.empty()) {
-    const std::size_t sum =
-        std::accumulate(options.sizes.begin(), options.sizes.end(), std::size_t{0});
-    if (sum == frames) return options.sizes;
-    throw argument_error(
-        message("align::batches: sizes that add up to ", frames, " frames expected, found ", sum));
-  }
-  if (options.size == 0) throw argument_error("align::batches: size > 0 expected");
-  std::vector<std::size_t> sizes(frames / options.size, options.size);
-  if (frames % options.size != 0) sizes.push_back(frames % options.size);
-  return sizes;
-}
-
-inline pose::trajectory slice(const pose::trajectory& t, std::size_t begin, std::size_t end) {
-  std::vector<std::size_t> indices(end - begin);
-  std::iota(indices.begin(), indices.end(), begin);
-  return select(t, indices);
-}
-
-/// Error of the odd frames of those chosen under a fit to the even ones.
-inline std::optional<double> half_rmse(const pose_fit& fit,
-                                       const std::vector<std::size_t>& chosen) {
-  std::vector<std::size_t> even, odd;
-  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
-  if (odd.empty()) return std::nullopt;
-  try {
-    const math::sim3 ref_from_est = fit(even);
-    double sse = 0;
-    for (const std::size_t i : odd) sse += std::pow(fit.residual(ref_from_est, i), 2);
-    return std::sqrt(sse / static_cast<double>(odd.size()));
-  } catch (const undefined_error&) {
-    return std::nullopt;
-  }
-}
-
-/// Errors of positions under a transform; NaN where a pose is not finite.
-inline Eigen::Vector3d position_error(const math::sim3& ref_from_est,
-                                      const pose::trajectory& estimate,
-                                      const pose::trajectory& reference,
-                                      std::size_t i) {
-  return ref_from_est * estimate.world_from_camera[i].translation -
-         reference.world_from_camera[i].translation;
-}
-
-inline batch_alignment align_batch(const pose::trajectory& estimate,
-                                   const pose::trajectory& reference,
-                                   std::size_t begin,
-                                   std::size_t end,
-                                   const trajectory_options& options) {
-  batch_alignment out{begin, end, {}, {}, {}, {}};
-  const pose::trajectory e = slice(estimate, begin, end), r = slice(reference, begin, end);
-  try {
-    out.fit = trajectory(e, r, options);
-  } catch (const undefined_error& failure) {
-    out.degenerate = failure.what();
-    return out;
-  }
-  const pose::registered_frames frames = pose::registered("align::batches", e, r);
-  const auto& outliers = out.fit->outliers;
-  std::vector<std::size_t> inliers;
-  for (std::size_t k = 0; k < frames.index.size(); ++k) {
-    if (!std::binary_search(outliers.begin(), outliers.end(), frames.index[k]))
-      inliers.push_back(k);
-  }
-  out.half_rmse = half_rmse(pose_fit(frames.estimate, frames.reference, options.fit), inliers);
-  for (std::size_t& i : out.fit->outliers) i += begin;
-  return out;
-}
-
-}  // namespace detail
-
-inline std::vector<batch_alignment> batches(const pose::trajectory& estimate,
-                                            const pose::trajectory& reference,
-                                            const batches_options& options) {
-  pose::check_associated("align::batches", estimate, reference);
-  std::vector<batch_alignment> out;
-  std::size_t begin = 0;
-  for (const std::size_t size : detail::batch_sizes(estimate.size(), options)) {
-    out.push_back(detail::align_batch(estimate, reference, begin, begin + size, options.align));
-    begin += size;
-  }
-  for (std::size_t k = 1; k < out.size(); ++k) {
-    if (!out[k - 1].fit || !out[k].fit) continue;
-    const std::size_t border = out[k].begin;
-    const double jump =
-        (detail::position_error(out[k].fit->transform, estimate, reference, border) -
-         detail::position_error(out[k - 1].fit->transform, estimate, reference, border - 1))
-            .norm();
-    if (std::isfinite(jump)) out[k].seam = jump;
-  }
-  return out;
-}
-
-inline pose::trajectory transformed(const std::vector<batch_alignment>& batches,
-                                    pose::trajectory estimate) {
-  for (const batch_alignment& batch : batches) {
-    for (std::size_t i = batch.begin; i < batch.end; ++i) {
-      math::rigid3& pose = estimate.world_from_camera.at(i);
-      if (batch.fit)
-        pose = batch.fit->transform * pose;
-      else
-        pose.translation.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  return estimate;
-}
-
-}  // namespace aib::align
-
-// aib/align/icp.hpp
-
-namespace aib::align {
-
-/// What an iteration makes small.
-enum class icp_metric {
-  point,  ///< distances between corresponding points
-  plane,  ///< distances along the normals of the reference
-};
-
-struct icp_options {
-  /// A pair farther apart is none. Several distances are a schedule, run one after another.
-  std::vector<double> max_distance = {};
-  icp_metric metric = icp_metric::point;
-  bool with_scale = false;
-  math::sim3 init = {};              ///< ref_from_est to begin with
-  std::size_t max_iterations = 100;  ///< for each distance of the schedule
-  double relative_change = 1e-9;     ///< of fitness and rmse, below which it has converged
-  unsigned threads = 0;              ///< 0: all
-};
-
-struct icp_result {
-  math::sim3 transform;  ///< ref_from_est
-  double fitness;        ///< share of the estimate that has a corresponding point
-  double rmse;           ///< of the distances of corresponding points
-  std::size_t n_pairs;
-  std::size_t n_iterations;  ///< of the whole schedule
-  bool converged;            ///< the last stage stopped before max_iterations
-};
-
-/// Iterative closest point: moves the estimate onto the reference from a rough alignment.
-///
-/// Correspondences are nearest neighbours in double below max_distance. The update is Umeyama's for
-/// points, a linearised least-squares step for planes (needs normals of the reference). The same
-/// for any number of threads.
-///
-/// Throws argument_error without a positive max_distance or without normals where they are needed,
-/// undefined_error if a cloud has no finite point or no pair is near enough.
-/// Source: Besl and McKay, PAMI 1992; Chen and Medioni, IVC 1992; stopping rule as Open3D.
-[[nodiscard]] icp_result icp(const cloud::cloud& estimate,
-                             const cloud::cloud& reference,
-                             const icp_options& options);
-
-namespace detail {
-
-/// Finite positions of a cloud, counted from an origin, and where each stood.
-struct icp_points {
-  std::vector<Eigen::Vector3d> position;
-  std::vector<std::size_t> source;
-
-  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin) {
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      if (!cloud::is_finite(c.points[i])) continue;
-      position.push_back(c.position(i) - origin);
-      source.push_back(i);
-    }
-    if (position.empty()) {
-      throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
-    }
-  }
-
-  // The interface that nanoflann asks for.
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return position[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-/// Corresponding points, the estimate's as they lie now.
-struct icp_pairs {
-  std::vector<Eigen::Vector3d> estimate;
-  std::vector<Eigen::Vector3d> reference;
-  std::vector<Eigen::Vector3d> normal;  ///< of the reference, for planes
-  double fitness = 0;
-  double rmse = 0;
-};
-
-class icp_solver {
- public:
-  icp_solver(const cloud::cloud& estimate,
-             const cloud::cloud& reference,
-             const icp_options& options)
-      : options_(options),
-        reference_cloud_(reference),
-        estimate_(estimate, reference.origin),
-        reference_(reference, reference.origin),
-        tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
-
-  [[nodiscard]] icp_result run();
-
- private:
-  using metric = nanoflann::L2_Simple_Adaptor<double, icp_points>;
-  using tree = nanoflann::KDTreeSingleIndexAdaptor<metric, icp_points, 3, std::size_t>;
-  static constexpr std::size_t none = ~std::size_t{0};
-
-  [[nodiscard]] std::vector<std::size_t> nearest(std::span<const Eigen::Vector3d> moved,
-                                                 double max_distance) const;
-  [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
-  [[nodiscard]] math::sim3 step(const icp_pairs& p) const;
-  [[nodiscard]] math::sim3 plane_step(const icp_pairs& p) const;
-
-  const icp_options& options_;
-  const cloud::cloud& reference_cloud_;
-  icp_points estimate_;
-  icp_points reference_;
-  tree tree_;
-};
-
-inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
-                                                    double max_distance) const {
-  std::vector<std::size_t> match(moved.size(), none);
-  for_each_chunk(moved.size(), 4096, options_.threads, {}, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      std::size_t index = 0;
-      double squared = 0;
-      tree_.knnSearch(moved[i].data(), 1, &index, &squared);
-      if (squared < max_distance * max_distance) match[i] = index;
-    }
-  });
-  return match;
-}
-
-inline icp_pairs icp_solver::pairs(const math::sim3& now, double max_distance) const {
-  std::vector<Eigen::Vector3d> moved;
-  moved.reserve(estimate_.position.size());
-  for (const Eigen::Vector3d& p : estimate_.position) moved.push_back(now * p);
-  const auto match = nearest(moved, max_distance);
-  icp_pairs found;
-  double squares = 0;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (match[i] == none) continue;
-    const Eigen::Vector3d& to = reference_.position[match[i]];
-    found.estimate.push_back(moved[i]);
-    found.reference.push_back(to);
-    if (options_.metric == icp_metric::plane) {
-      const std::size_t source = reference_.source[match[i]];
-      found.normal.push_back(reference_cloud_.normals[source].cast<double>());
-    }
-    squares += (moved[i] - to).squaredNorm();
-  }
-  const auto n = static_cast<double>(found.estimate.size());
-  found.fitness = n / static_cast<double>(moved.size());
-  found.rmse = n > 0 ? std::sqrt(squares / n) : 0;
-  return found;
-}
-
-/// Solves for a small turn, shift and (with scale) stretch that bring the estimate onto the planes.
-inline math::sim3 icp_solver::plane_step(const icp_pairs& p) const {
-  const int unknowns = options_.with_scale ? 7 : 6;
-  Eigen::MatrixXd normal_matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
-  for (std::size_t i = 0; i < p.estimate.size(); ++i) {
-    const Eigen::Vector3d& x = p.estimate[i];
-    const Eigen::Vector3d& n = p.normal[i];
-    const double residual = n.dot(p.reference[i] - x);
-    Eigen::VectorXd row(unknowns);
-    row.head<3>() = x.cross(n);
-    row.segment<3>(3) = n;
-    if (options_.with_scale) row[6] = n.dot(x);
-    if (!row.allFinite()) continue;
-    normal_matrix += row * row.transpose();
-    right += row * residual;
-  }
-  const Eigen::VectorXd u = normal_matrix.ldlt().solve(right);
-  if (!u.allFinite()) throw undefined_error("align::icp: the planes do not hold the estimate");
-  const Eigen::Vector3d turn = u.head<3>();
-  return {options_.with_scale ? 1 + u[6] : 1, math::rotation_from(turn), u.segment<3>(3)};
-}
-
-inline math::sim3 icp_solver::step(const icp_pairs& p) const {
-  if (options_.metric == icp_metric::plane) return plane_step(p);
-  return umeyama(p.estimate, p.reference, {.scale = options_.with_scale});
-}
-
-inline icp_result icp_solver::run() {
-  const Eigen::Vector3d& origin = reference_cloud_.origin;
-  const math::sim3 to_local{1, Eigen::Matrix3d::Identity(), -origin};
-  math::sim3 now = to_local * options_.init * to_local.inverse();
-  icp_result result{};
-  for (const double distance : options_.max_distance) {
-    icp_pairs p = pairs(now, distance);
-    result.converged = false;
-    for (std::size_t i = 0; i < options_.max_iterations && !result.converged; ++i) {
-      if (p.estimate.empty()) {
-        throw undefined_error(
-            message("align::icp: no point of the estimate within ", distance, " of the reference"));
-      }
-      now = step(p) * now;
-      icp_pairs next = pairs(now, distance);
-      result.converged = std::abs(next.fitness - p.fitness) < options_.relative_change &&
-                         std::abs(next.rmse - p.rmse) < options_.relative_change;
-      p = std::move(next);
-      ++result.n_iterations;
-    }
-    result.fitness = p.fitness;
-    result.rmse = p.rmse;
-    result.n_pairs = p.estimate.size();
-  }
-  result.transform = to_local.inverse() * now * to_local;
-  return result;
-}
-
-inline void check_icp(const cloud::cloud& reference, const icp_options& options) {
-  if (options.max_distance.empty()) throw argument_error("align::icp: max_distance expected");
-  for (const double d : options.max_distance) {
-    if (!(d > 0)) throw argument_error(message("align::icp: max_distance > 0 expected, found ", d));
-  }
-  if (options.metric == icp_metric::plane && reference.normals.size() != reference.size()) {
-    throw argument_error("align::icp: metric plane expects a reference with normals");
-  }
-}
-
-}  // namespace detail
-
-inline icp_result icp(const cloud::cloud& estimate,
-                      const cloud::cloud& reference,
-                      const icp_options& options) {
-  detail::check_icp(reference, options);
-  return detail::icp_solver(estimate, reference, options).run();
-}
-
-}  // namespace aib::align
-
-// aib/sample/mesh.hpp
-
-namespace aib::sample {
-
-/// How many points; exactly one of the three is given.
-struct mesh_options {
-  std::optional<std::size_t> n = {};    ///< this many
-  std::optional<double> spacing = {};   ///< one a square of this side, in the unit of the mesh
-  std::optional<double> per_area = {};  ///< this many a square unit
-  std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: all
-};
-
-/// Points on a surface and how densely they lie.
-struct mesh_samples {
-  cloud::cloud points;  ///< with face normals, and labels where the mesh has them
-  double area;          ///< of the mesh, square units
-  double density;       ///< points a square unit
-  /// Mean distance from a point of the surface to the nearest of randomly placed samples,
-  /// 0.5 / sqrt(density): below it an accuracy against these samples says nothing.
-  double floor;
-};
-
-/// Mean distance from a point of a surface to the nearest of randomly placed samples.
-[[nodiscard]] inline double sampling_floor(double density) { return 0.5 / std::sqrt(density); }
-
-/// Points on a mesh, uniform by area. A triangle of area a gets n a / area points, rounded up or
-/// down by one random offset for all; within it they are independent.
-///
-/// Points lie in the order of their triangles and have the triangle's normal and label.
-/// The same for any number of threads.
-/// Throws argument_error unless exactly one of n, spacing, per_area is given and positive,
-/// undefined_error if the mesh has no area.
-mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options);
-
-namespace detail {
-
-inline std::size_t sample_count(const mesh_options& options, double area) {
-  if (options.n.has_value() + options.spacing.has_value() + options.per_area.has_value() != 1) {
-    throw argument_error("sample::mesh: exactly one of n, spacing and per_area expected");
-  }
-  const double n = options.n         ? static_cast<double>(*options.n)
-                   : options.spacing ? area / (*options.spacing * *options.spacing)
-                                     : area * *options.per_area;
-  const bool positive = !options.spacing || *options.spacing > 0;
-  if (!(n > 0) || !positive) {
-    throw argument_error("sample::mesh: n, spacing or per_area must be positive");
-  }
-  if (n > std::numeric_limits<std::uint32_t>::max()) {
-    throw argument_error(message("sample::mesh: at most 4 294 967 295 points expected, found ", n));
-  }
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(n)));
-}
-
-/// Index of the first sample of each triangle, and at the end their number.
-inline std::vector<std::size_t> sample_starts(const aib::mesh::mesh& surface,
-                                              double area,
-                                              std::size_t n,
-                                              double offset) {
-  std::vector<std::size_t> starts;
-  starts.reserve(surface.triangles.size() + 1);
-  double below = 0;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const double place = below / area * static_cast<double>(n) + offset;
-    starts.push_back(std::min(n, static_cast<std::size_t>(place)));
-    below += aib::mesh::area(surface, t);
-  }
-  starts.push_back(n);
-  return starts;
-}
-
-/// Uniform in [0, 1) for a counter.
-inline double uniform(std::uint64_t seed, std::uint64_t counter) {
-  return static_cast<double>(random_bits(seed, counter) >> 11) * 0x1p-53;
-}
-
-/// A point of a triangle for two uniform numbers.
-/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
-inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner, double u, double v) {
-  const double root = std::sqrt(u);
-  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
-}
-
-inline Eigen::Vector3f unit_normal(const std::array<Eigen::Vector3d, 3>& corner) {
-  const Eigen::Vector3d ab = corner[1] - corner[0];
-  const Eigen::Vector3d ac = corner[2] - corner[0];
-  const Eigen::Vector3d normal = ab.cross(ac).normalized();
-  return normal.cast<float>();
-}
-
-/// An empty cloud that n points will lie in.
-inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
-  cloud::cloud points;
-  points.origin = surface.origin;
-  points.points.resize(n);
-  points.normals.resize(n);
-  if (!surface.labels.empty()) points.labels.resize(n);
-  return points;
-}
-
-}  // namespace detail
-
-inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options) {
-  const double area = aib::mesh::area(surface);
-  if (!(area > 0)) {
-    throw undefined_error(
-        message("sample::mesh: the mesh has no area (", surface.triangles.size(), " triangles)"));
-  }
-  const std::size_t n = detail::sample_count(options, area);
-  const double offset = detail::uniform(options.seed, 0);
-  const auto starts = detail::sample_starts(surface, area, n, offset);
-  cloud::cloud points = detail::room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
-    for (std::size_t t = c.begin; t < c.end; ++t) {
-      if (starts[t] == starts[t + 1]) continue;
-      const auto corner = aib::mesh::corners(surface, t);
-      const Eigen::Vector3f normal = detail::unit_normal(corner);
-      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-        const Eigen::Vector3d p = detail::point_in(corner, detail::uniform(options.seed, 2 * i + 1),
-                                                   detail::uniform(options.seed, 2 * i + 2));
-        points.points[i] = p.cast<float>();
-        points.normals[i] = normal;
-        if (!points.labels.empty()) points.labels[i] = surface.labels[t];
-      }
-    }
-  });
-  const double density = static_cast<double>(n) / area;
-  return {std::move(points), area, density, sampling_floor(density)};
-}
-
-}  // namespace aib::sample
-
-// aib/sample/unproject.hpp
-
-namespace aib::sample {
-
-/// What the numbers of a confidence map are, and thus what `min_confidence` is compared with.
-enum class confidence_rule {
-  raw,         ///< the number itself is above it (DA3, VGGT: never below 1)
-  sigmoid,     ///< 1 / (1 + exp(-number)) is above it (pi3 stores logits)
-  percentile,  ///< a share: that part of the valid pixels, the least confident, is left out
-};
-
-/// What a depth is.
-enum class depth_meaning {
-  planar,  ///< distance along the optical axis
-  range,   ///< distance from the camera centre
-};
-
-struct unproject_options {
-  raster::view<const float> confidence = {};  ///< none, or of the size of the map
-  std::optional<double> min_confidence = {};  ///< a pixel is kept strictly above it
-  confidence_rule rule = confidence_rule::raw;
-  std::size_t stride = 1;     ///< every stride-th column and row
-  double pixel_offset = 0.5;  ///< of a pixel's centre from its index: 0.5 as COLMAP, or 0
-  depth_meaning meaning = depth_meaning::planar;
-  raster::view<const raster::rgb> colors = {};  ///< none, or of the size of the map
-  unsigned threads = 0;                         ///< 0: all
-};
-
-/// Points of a depth map, and what became of its pixels.
-struct unprojected {
-  cloud::cloud points;   ///< row by row
-  std::size_t n_valid;   ///< pixels of the grid with a depth
-  std::size_t n_unsure;  ///< of those, left out for their confidence
-  std::size_t n_unseen;  ///< left out because the camera sees nothing there
-};
-
-/// The points that a depth map shows, in world frame.
-///
-/// depth              in the unit of the pose
-/// camera             any model; where its size differs from the map's, pixels are scaled to it
-/// world_from_camera  a depth map and a pose of a method's own scale give points of that scale:
-///                    align the points afterwards
-///
-/// The order of the points does not depend on the number of threads. Throws argument_error if the
-/// sizes differ, stride is 0, the pose is not finite or only one of confidence and min_confidence
-/// is given.
-[[nodiscard]] unprojected unproject(const depth::depth_map& map,
-                                    const math::camera& camera,
-                                    const math::rigid3& world_from_camera,
-                                    const unproject_options& options = {});
-
-namespace detail {
-
-inline void check(const depth::depth_map& map,
-                  const math::rigid3& pose,
-                  const unproject_options& options) {
-  const auto require = [&](bool holds, const auto&... what) {
-    if (!holds) throw argument_error(message("sample::unproject: ", what...));
-  };
-  const auto same_size = [&](std::string_view thing, const auto& view) {
-    require(!view.data || (view.width == map.values.width() && view.height == map.values.height()),
-            "the depth map is ", map.values.width(), "x", map.values.height(), ", the ", thing, " ",
-            view.width, "x", view.height);
-  };
-  same_size("confidence map", options.confidence);
-  same_size("picture", options.colors);
-  require(options.stride > 0, "stride >= 1 expected, found 0");
-  require(pose.is_finite(), "the pose is not finite");
-  require(options.min_confidence.has_value() == (options.confidence.data != nullptr),
-          "a confidence map and min_confidence go together, found one of them");
-}
-
-/// The confidence as stored that a pixel must exceed. Of a percentile: the quantile of the
-/// confidences of valid pixels.
-inline double confidence_threshold(const depth::depth_map& map, const unproject_options& options) {
-  const double least = *options.min_confidence;
-  if (options.rule == confidence_rule::raw) return least;
-  if (!(least >= 0 && least <= 1)) {
-    throw argument_error(
-        message("sample::unproject: min_confidence in [0, 1] expected, found ", least));
-  }
-  if (options.rule == confidence_rule::sigmoid) return std::log(least / (1 - least));
-  std::vector<float> of_valid;
-  for (std::size_t y = 0; y < map.values.height(); y += options.stride) {
-    for (std::size_t x = 0; x < map.values.width(); x += options.stride) {
-      if (depth::is_valid(map.values(x, y))) of_valid.push_back(options.confidence(x, y));
-    }
-  }
-  if (of_valid.empty() || least == 0) return -HUGE_VAL;
-  return stats::quantile_in_place<float>(of_valid, least, stats::quantile_rule::lower);
-}
-
-/// Unprojects rows of one map.
-class unprojector {
- public:
-  unprojector(const depth::depth_map& map,
-              const math::camera& camera,
-              const math::rigid3& world_from_camera,
-              const unproject_options& options)
-      : map_(map.values), camera_(camera), pose_(world_from_camera), options_(options) {
-    if (options.confidence.data) threshold_ = confidence_threshold(map, options);
-    if (camera.width > 0 && camera.height > 0) {
-      scale_x_ = static_cast<double>(camera.width) / static_cast<double>(map_.width);
-      scale_y_ = static_cast<double>(camera.height) / static_cast<double>(map_.height);
-    }
-  }
-
-  /// Adds the points of a row to `to`, which are counted from `to.points.origin`.
-  void add_row(std::size_t y, unprojected& to) const {
-    for (std::size_t x = 0; x < map_.width; x += options_.stride) {
-      const float depth = map_(x, y);
-      if (!depth::is_valid(depth)) continue;
-      ++to.n_valid;
-      if (threshold_ && !(options_.confidence(x, y) > *threshold_)) {
-        ++to.n_unsure;
-      } else if (const auto p_in_camera = point(x, y, depth)) {
-        const Eigen::Vector3d p = pose_ * *p_in_camera - to.points.origin;
-        to.points.points.push_back(p.cast<float>());
-        if (options_.colors.data) to.points.colors.push_back(options_.colors(x, y));
-      } else {
-        ++to.n_unseen;
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] std::optional<Eigen::Vector3d> point(std::size_t x,
-                                                     std::size_t y,
-                                                     double depth) const {
-    const Eigen::Vector2d pixel((static_cast<double>(x) + options_.pixel_offset) * scale_x_,
-                                (static_cast<double>(y) + options_.pixel_offset) * scale_y_);
-    const auto direction = math::unproject(camera_, pixel);
-    if (!direction) return std::nullopt;
-    if (options_.meaning == depth_meaning::range) return *direction * depth;
-    if (!(direction->z() > 0)) return std::nullopt;
-    return *direction * (depth / direction->z());
-  }
-
-  raster::view<const float> map_;
-  const math::camera& camera_;
-  const math::rigid3& pose_;
-  const unproject_options& options_;
-  std::optional<double> threshold_ = {};
-  double scale_x_ = 1;
-  double scale_y_ = 1;
-};
-
-inline unprojected append(unprojected a, const unprojected& b) {
-  const auto extend = [](auto& to, const auto& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  extend(a.points.points, b.points.points);
-  extend(a.points.colors, b.points.colors);
-  a.n_valid += b.n_valid;
-  a.n_unsure += b.n_unsure;
-  a.n_unseen += b.n_unseen;
-  return a;
-}
-
-}  // namespace detail
-
-inline unprojected unproject(const depth::depth_map& map,
-                             const math::camera& camera,
-                             const math::rigid3& world_from_camera,
-                             const unproject_options& options) {
-  detail::check(map, world_from_camera, options);
-  const Eigen::Vector3d& centre = world_from_camera.translation;
-  unprojected nothing{};
-  nothing.points.origin = cloud::natural_origin(centre, centre);
-  if (map.values.empty()) return nothing;
-  const detail::unprojector rows(map, camera, world_from_camera, options);
-  const std::size_t n_rows = (map.values.height() + options.stride - 1) / options.stride;
-  const auto points_of = [&](const chunk& c) {
-    unprojected part = nothing;
-    for (std::size_t i = c.begin; i < c.end; ++i) rows.add_row(i * options.stride, part);
-    return part;
-  };
-  return reduce_chunks(n_rows, 32, options.threads, {}, nothing, points_of, detail::append);
-}
-
-}  // namespace aib::sample
-
-// aib/sample/voxel.hpp
-
-namespace aib::sample {
-
-/// Where the lattice of voxels begins.
-enum class voxel_anchor {
-  world,   ///< at the origin of the world: one more point moves no other
-  open3d,  ///< half a voxel below the cloud's own corner, as Open3D's voxel_down_sample
-};
-
-/// The one point that stands for a voxel.
-enum class voxel_pick {
-  mean,     ///< mean of its points
-  centre,   ///< centre of the voxel
-  nearest,  ///< that of its points which is nearest to their mean
-};
-
-struct voxel_options {
-  double size = 0;  ///< edge of a voxel, in the unit of the cloud
-  voxel_anchor anchor = voxel_anchor::world;
-  voxel_pick pick = voxel_pick::mean;
-  unsigned threads = 0;  ///< 0: all
-};
-
-/// One point for each voxel that has any, in the order of the lattice. Normal, colour and label are
-/// those of the voxel's point nearest to the chosen one. Points that are not finite are left out.
-///
-/// The cell of a point is calculated in double. The same for any number of threads.
-/// Throws argument_error if size is not positive or far too small for the cloud.
-[[nodiscard]] cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options);
-
-namespace detail {
-
-/// The lattice: which cell a point lies in, counted from the lowest cell of the cloud.
-class voxel_lattice {
- public:
-  voxel_lattice(const cloud::cloud& points, const voxel_options& options)
-      : points_(points), size_(options.size) {
-    if (!(options.size > 0 && std::isfinite(options.size))) {
-      throw argument_error(message("sample::voxel: size > 0 expected, found ", options.size));
-    }
-    const cloud::box box = cloud::bounds(points);
-    anchor_.setZero();
-    if (options.anchor == voxel_anchor::open3d) anchor_ = box.low.array() - size_ * 0.5;
-    if (box.empty()) return;
-    const Eigen::Vector3d low = cell_of(box.low), high = cell_of(box.high);
-    first_ = low;
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(low[k]) < 0x1p52 && std::abs(high[k]) < 0x1p52 && high[k] - low[k] < 0x1p31)) {
-        throw argument_error(
-            message("sample::voxel: size ", size_, " is too small for a cloud of ", box.size()[k]));
-      }
-      const auto cells = static_cast<std::uint64_t>(high[k] - low[k]) + 1;
-      bits_[static_cast<std::size_t>(k)] = static_cast<int>(std::bit_width(cells));
-    }
-  }
-
-  /// Bits that the cells take on an axis.
-  [[nodiscard]] int bits(std::size_t axis) const { return bits_[axis]; }
-
-  [[nodiscard]] std::array<std::uint64_t, 3> cell(std::size_t i) const {
-    const Eigen::Vector3d c = cell_of(points_.position(i)) - first_;
-    return {static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
-            static_cast<std::uint64_t>(c.z())};
-  }
-
-  /// Centre of the cell of point i.
-  [[nodiscard]] Eigen::Vector3d centre(std::size_t i) const {
-    const Eigen::Vector3d c = cell_of(points_.position(i));
-    return anchor_.array() + (c.array() + 0.5) * size_;
-  }
-
- private:
-  [[nodiscard]] Eigen::Vector3d cell_of(const Eigen::Vector3d& p) const {
-    return ((p - anchor_) / size_).array().floor();
-  }
-
-  const cloud::cloud& points_;
-  double size_;
-  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
-  std::array<int, 3> bits_{};
-};
-
-/// Finite points sorted by their cell (z, then y, then x), then index: one radix sort an axis, the
-/// least important axis first, each stable.
-inline search::buffer<std::uint64_t> sort_by_cell(const cloud::cloud& points,
-                                                  const voxel_lattice& lattice,
-                                                  unsigned threads) {
-  const int index_bits = std::max(1, static_cast<int>(std::bit_width(points.size())));
-  const std::uint64_t mask = (std::uint64_t{1} << index_bits) - 1;
-  std::vector<std::uint64_t> finite;
-  finite.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (cloud::is_finite(points.points[i])) finite.push_back(i);
-  }
-  search::buffer<std::uint64_t> words(finite.size());
-  std::copy(finite.begin(), finite.end(), words.data());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for_each_chunk(words.size(), 1 << 16, threads, {}, [&](const chunk& c) {
-      for (std::size_t w = c.begin; w < c.end; ++w) {
-        const std::uint64_t i = words[w] & mask;
-        words[w] = lattice.cell(i)[axis] << index_bits | i;
-      }
-    });
-    search::radix_sort(words, {index_bits, index_bits + lattice.bits(axis)}, threads);
-  }
-  for (std::size_t w = 0; w < words.size(); ++w) words[w] &= mask;
-  return words;
-}
-
-/// Where each voxel's points begin in the sorted list, and at the end its length.
-inline std::vector<std::size_t> voxel_starts(const search::buffer<std::uint64_t>& sorted,
-                                             const voxel_lattice& lattice) {
-  std::vector<std::size_t> starts;
-  std::array<std::uint64_t, 3> last{};
-  for (std::size_t w = 0; w < sorted.size(); ++w) {
-    const auto cell = lattice.cell(sorted[w]);
-    if (w == 0 || cell != last) starts.push_back(w);
-    last = cell;
-  }
-  starts.push_back(sorted.size());
-  return starts;
-}
-
-/// Index of the point nearest to a position, the first among equals.
-inline std::size_t nearest_of(const cloud::cloud& points,
-                              std::span<const std::uint64_t> index,
-                              const Eigen::Vector3d& to) {
-  return *std::min_element(index.begin(), index.end(), [&](std::uint64_t a, std::uint64_t b) {
-    return (points.position(a) - to).squaredNorm() < (points.position(b) - to).squaredNorm();
-  });
-}
-
-/// Mean position of some points.
-inline Eigen::Vector3d mean_of(const cloud::cloud& points, std::span<const std::uint64_t> index) {
-  Eigen::Vector3d sum(0, 0, 0);
-  for (const std::uint64_t i : index) sum += points.points[i].cast<double>();
-  return points.origin + sum / static_cast<double>(index.size());
-}
-
-}  // namespace detail
-
-inline cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options) {
-  const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
-  const detail::voxel_lattice lattice(points, options);
-  const auto sorted = detail::sort_by_cell(points, lattice, threads);
-  const auto starts = detail::voxel_starts(sorted, lattice);
-  const std::size_t n = starts.size() - 1;
-  std::vector<std::size_t> source(n);
-  std::vector<Eigen::Vector3d> position(n);
-  for_each_chunk(n, 4096, threads, {}, [&](const chunk& c) {
-    for (std::size_t v = c.begin; v < c.end; ++v) {
-      const auto members = sorted.span().subspan(starts[v], starts[v + 1] - starts[v]);
-      const bool centre = options.pick == voxel_pick::centre;
-      position[v] = centre ? lattice.centre(members.front()) : detail::mean_of(points, members);
-      source[v] = detail::nearest_of(points, members, position[v]);
-    }
-  });
-  cloud::cloud picked = cloud::select(points, source);
-  if (options.pick == voxel_pick::nearest) return picked;
-  cloud::placed_points placed =
-      cloud::place(n, [&](std::size_t v) -> const Eigen::Vector3d& { return position[v]; });
-  picked.origin = placed.origin;
-  picked.points = std::move(placed.points);
-  return picked;
-}
-
-}  // namespace aib::sample
 
 // aib/io/bytes.hpp
 
@@ -10300,6 +6836,32 @@ inline array_frames read_array_frames(const std::filesystem::path& path, const s
 }
 
 }  // namespace aib::io
+
+// aib/mesh/mesh.hpp
+
+namespace aib::mesh {
+
+using triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles over shared vertices. A vertex lies at `origin + vertices[i]`, as a point of a cloud
+/// does.
+///
+/// `labels` is empty or one a triangle; `label_names[k]` names label k where the source does.
+struct mesh {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> vertices = {};
+  std::vector<triangle> triangles = {};
+  std::vector<std::uint32_t> labels = {};
+  std::vector<std::string> label_names = {};
+  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
+
+  [[nodiscard]] bool empty() const { return triangles.empty(); }
+  [[nodiscard]] Eigen::Vector3d position(std::size_t vertex) const {
+    return origin + vertices[vertex].cast<double>();
+  }
+};
+
+}  // namespace aib::mesh
 
 // aib/io/axes.hpp
 
@@ -12837,6 +9399,124 @@ inline math::rigid3 pose_in_frame(const math::rigid3& world_from_camera, const p
 }
 
 }  // namespace aib::io
+
+// aib/math/camera.hpp
+
+namespace aib::math {
+
+/// Camera models with COLMAP's numbers, up to COLMAP 4.2.
+enum class camera_model : std::int32_t {
+  simple_pinhole = 0,
+  pinhole = 1,
+  simple_radial = 2,
+  radial = 3,
+  opencv = 4,
+  opencv_fisheye = 5,
+  full_opencv = 6,
+  fov = 7,
+  simple_radial_fisheye = 8,
+  radial_fisheye = 9,
+  thin_prism_fisheye = 10,
+  rad_tan_thin_prism_fisheye = 11,
+  simple_division = 12,
+  division = 13,
+  simple_fisheye = 14,
+  fisheye = 15,
+  eucm = 16,
+  equirectangular = 17,
+};
+
+/// What COLMAP calls a model and how its parameters begin.
+struct camera_model_info {
+  std::string_view name;  ///< as in cameras.txt
+  std::size_t n_parameters;
+  std::size_t n_focal;  ///< 1: f, cx, cy, ...   2: fx, fy, cx, cy, ...   0: no focal length
+};
+
+inline constexpr std::array<camera_model_info, 18> camera_models{{
+    {"SIMPLE_PINHOLE", 3, 1},
+    {"PINHOLE", 4, 2},
+    {"SIMPLE_RADIAL", 4, 1},
+    {"RADIAL", 5, 1},
+    {"OPENCV", 8, 2},
+    {"OPENCV_FISHEYE", 8, 2},
+    {"FULL_OPENCV", 12, 2},
+    {"FOV", 5, 2},
+    {"SIMPLE_RADIAL_FISHEYE", 4, 1},
+    {"RADIAL_FISHEYE", 5, 1},
+    {"THIN_PRISM_FISHEYE", 12, 2},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2},
+    {"SIMPLE_DIVISION", 4, 1},
+    {"DIVISION", 5, 2},
+    {"SIMPLE_FISHEYE", 3, 1},
+    {"FISHEYE", 4, 2},
+    {"EUCM", 6, 2},
+    {"EQUIRECTANGULAR", 2, 0},
+}};
+
+[[nodiscard]] constexpr const camera_model_info& info(camera_model model) {
+  return camera_models[static_cast<std::size_t>(model)];
+}
+
+/// The model of COLMAP's number or name; nothing where COLMAP (up to 4.2) has none such.
+[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::int64_t id) {
+  if (id < 0 || id >= static_cast<std::int64_t>(camera_models.size())) return std::nullopt;
+  return static_cast<camera_model>(id);
+}
+[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::string_view name) {
+  for (std::size_t i = 0; i < camera_models.size(); ++i) {
+    if (camera_models[i].name == name) return static_cast<camera_model>(i);
+  }
+  return std::nullopt;
+}
+
+/// Intrinsics of a camera. Pixel (0.5, 0.5) is the centre of the top left pixel.
+struct camera {
+  camera_model model = camera_model::pinhole;
+  std::uint64_t width = 0;         ///< pixels
+  std::uint64_t height = 0;        ///< pixels
+  std::vector<double> parameters;  ///< in COLMAP's order, pixels where they are lengths
+
+  [[nodiscard]] bool has_focal() const { return info(model).n_focal > 0; }
+
+  /// Focal lengths and principal point in pixels. Throw argument_error where the model has none.
+  [[nodiscard]] double fx() const;
+  [[nodiscard]] double fy() const;
+  [[nodiscard]] double cx() const;
+  [[nodiscard]] double cy() const;
+};
+
+namespace detail {
+
+inline double pinhole_parameter(const camera& c, std::size_t index) {
+  if (!c.has_focal())
+    throw argument_error(message("camera: ", info(c.model).name, " has no focal length"));
+  if (index >= c.parameters.size()) {
+    throw argument_error(message("camera: ", info(c.model).name, " expects ",
+                                 info(c.model).n_parameters, " parameters, found ",
+                                 c.parameters.size()));
+  }
+  return c.parameters[index];
+}
+
+}  // namespace detail
+
+inline double camera::fx() const { return detail::pinhole_parameter(*this, 0); }
+inline double camera::fy() const {
+  return detail::pinhole_parameter(*this, info(model).n_focal - 1);
+}
+inline double camera::cx() const { return detail::pinhole_parameter(*this, info(model).n_focal); }
+inline double camera::cy() const {
+  return detail::pinhole_parameter(*this, info(model).n_focal + 1);
+}
+
+/// A camera without distortion.
+[[nodiscard]] inline camera pinhole(
+    std::uint64_t width, std::uint64_t height, double fx, double fy, double cx, double cy) {
+  return {camera_model::pinhole, width, height, {fx, fy, cx, cy}};
+}
+
+}  // namespace aib::math
 
 // aib/io/colmap_records.hpp
 
@@ -18108,3 +14788,3323 @@ inline void write_npz(const std::filesystem::path& path,
 
 }  // namespace aib::io
 #endif
+
+// aib/math/projection.hpp
+
+namespace aib::math {
+
+/// Pixel of a point, of every camera model; nothing where the model has none: behind a perspective
+/// camera, beyond the range of a division model or of EUCM, at the centre.
+///
+/// p_in_camera   x right, y down, z forward, any unit
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+/// Source: COLMAP 4.2, src/colmap/sensor/models.h; FOV: Devernay and Faugeras 2001; division:
+/// Fitzgibbon, CVPR 2001; EUCM: Khomutenko, Garcia, Martinet, RA-L 2016.
+std::optional<Eigen::Vector2d> project(const camera& camera, const Eigen::Vector3d& p_in_camera);
+
+/// Direction in the camera, unit length, of the points that project to a pixel; nothing where no
+/// point does. The inverse of `project` to 1e-9 pixels within the range where the distortion grows.
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+std::optional<Eigen::Vector3d> unproject(const camera& camera, const Eigen::Vector2d& pixel);
+
+namespace detail {
+
+using point2 = Eigen::Vector2d;
+
+/// Parameters behind focal length and principal point. Throws argument_error if they are too few or
+/// too many.
+inline std::span<const double> distortion_parameters(const camera& c) {
+  const camera_model_info& model = info(c.model);
+  if (c.parameters.size() != model.n_parameters) {
+    throw argument_error(message("camera: ", model.name, " expects ", model.n_parameters,
+                                 " parameters, found ", c.parameters.size()));
+  }
+  return std::span(c.parameters).subspan(model.n_focal == 0 ? 2 : model.n_focal + 2);
+}
+
+/// How a direction becomes a point of the plane that is distorted.
+enum class image_plane { perspective, equidistant, other };
+
+constexpr image_plane plane_of(camera_model model) {
+  switch (model) {
+    case camera_model::simple_pinhole:
+    case camera_model::pinhole:
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::opencv:
+    case camera_model::full_opencv:
+    case camera_model::fov:
+      return image_plane::perspective;
+    case camera_model::opencv_fisheye:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::thin_prism_fisheye:
+    case camera_model::rad_tan_thin_prism_fisheye:
+    case camera_model::simple_fisheye:
+    case camera_model::fisheye:
+      return image_plane::equidistant;
+    default:
+      return image_plane::other;
+  }
+}
+
+/// 1 + k[0] r2 + k[1] r2^2 + ...
+inline double radial(std::span<const double> k, double r2) {
+  double sum = 0;
+  for (std::size_t i = k.size(); i > 0; --i) sum = (sum + k[i - 1]) * r2;
+  return 1 + sum;
+}
+
+/// Decentring of Brown: p1 is the weight of the y axis, p2 of the x axis.
+inline point2 decentred(const point2& p, double p1, double p2) {
+  const double xy = 2 * p.x() * p.y(), r2 = p.squaredNorm();
+  return {p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
+}
+
+inline point2 distort_full_opencv(std::span<const double> k, const point2& p) {
+  const double numerator[] = {k[0], k[1], k[4]}, r2 = p.squaredNorm();
+  return p * (radial(numerator, r2) / radial(k.subspan(5, 3), r2)) + decentred(p, k[2], k[3]);
+}
+
+inline point2 distort_fov(double omega, const point2& p) {
+  const double r = p.norm();
+  if (omega == 0) return p;
+  const double slope = 2 * std::tan(omega / 2);
+  return p * (r < 1e-12 ? slope / omega : std::atan(r * slope) / (r * omega));
+}
+
+inline point2 distort_thin_prism(std::span<const double> k, const point2& p) {
+  const double radii[] = {k[0], k[1], k[4], k[5]}, r2 = p.squaredNorm();
+  return p * radial(radii, r2) + decentred(p, k[2], k[3]) + r2 * point2(k[6], k[7]);
+}
+
+inline point2 distort_rad_tan_thin_prism(std::span<const double> k, const point2& p) {
+  const point2 q = p * radial(k.first(6), p.squaredNorm());
+  const double r2 = q.squaredNorm();
+  return q + decentred(q, k[7], k[6]) +
+         point2(k[8] * r2 + k[9] * r2 * r2, k[10] * r2 + k[11] * r2 * r2);
+}
+
+/// Distorted point of the image plane of a model that has one.
+inline point2 distort(camera_model model, std::span<const double> k, const point2& p) {
+  switch (model) {
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::opencv_fisheye:
+      return p * radial(k, p.squaredNorm());
+    case camera_model::opencv:
+      return p * radial(k.first(2), p.squaredNorm()) + decentred(p, k[2], k[3]);
+    case camera_model::full_opencv:
+      return distort_full_opencv(k, p);
+    case camera_model::fov:
+      return distort_fov(k[0], p);
+    case camera_model::thin_prism_fisheye:
+      return distort_thin_prism(k, p);
+    case camera_model::rad_tan_thin_prism_fisheye:
+      return distort_rad_tan_thin_prism(k, p);
+    default:
+      return p;
+  }
+}
+
+inline Eigen::Matrix2d distortion_slope(camera_model model,
+                                        std::span<const double> k,
+                                        const point2& p) {
+  constexpr double step = 1e-6;
+  Eigen::Matrix2d slope;
+  for (int axis = 0; axis < 2; ++axis) {
+    const point2 aside = step * point2::Unit(axis);
+    slope.col(axis) = (distort(model, k, p + aside) - distort(model, k, p - aside)) / (2 * step);
+  }
+  return slope;
+}
+
+/// The point that `distort` takes to `goal`, by Newton's method from there. Nothing where the steps
+/// end beyond the range in which the distortion grows.
+inline std::optional<point2> undistort(camera_model model,
+                                       std::span<const double> k,
+                                       const point2& goal) {
+  point2 p = goal;
+  for (int round = 0; round < 50; ++round) {
+    const point2 miss = distort(model, k, p) - goal;
+    if (!miss.allFinite()) return std::nullopt;
+    if (miss.norm() <= 1e-15 * (1 + goal.norm())) break;
+    p -= distortion_slope(model, k, p).inverse() * miss;
+  }
+  const bool there = (distort(model, k, p) - goal).norm() <= 1e-13 * (1 + goal.norm());
+  const bool this_side = p.dot(goal) > 0 || goal.norm() < 1e-2;
+  if (!there || !this_side || !(distortion_slope(model, k, p).determinant() > 0))
+    return std::nullopt;
+  return p;
+}
+
+inline std::optional<point2> on_plane(image_plane plane, const Eigen::Vector3d& p) {
+  if (plane == image_plane::perspective) {
+    if (!(p.z() > 0)) return std::nullopt;
+    return point2(p.head<2>() / p.z());
+  }
+  const double r = p.head<2>().norm();
+  if (r == 0) return p.z() > 0 ? std::optional(point2(0, 0)) : std::nullopt;
+  return point2(p.head<2>() * (std::atan2(r, p.z()) / r));
+}
+
+inline std::optional<Eigen::Vector3d> off_plane(image_plane plane, const point2& p) {
+  if (plane == image_plane::perspective) return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
+  const double angle = p.norm();
+  if (angle > std::numbers::pi) return std::nullopt;
+  const double share = angle == 0 ? 1 : std::sin(angle) / angle;
+  return Eigen::Vector3d(share * p.x(), share * p.y(), std::cos(angle));
+}
+
+/// The undistorted point of a division model is (x, y, 1 + k r^2).
+inline std::optional<point2> project_division(double k, const Eigen::Vector3d& p) {
+  const double r2 = p.head<2>().squaredNorm();
+  // (x, y) s with s z = 1 + k r2 s^2: the root that is 1 / z without distortion.
+  const double root = p.z() * p.z() - 4 * k * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double denominator = p.z() + std::sqrt(root);
+  if (!(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() * (2 / denominator));
+}
+
+inline std::optional<point2> project_eucm(double alpha, double beta, const Eigen::Vector3d& p) {
+  const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
+  const double w = alpha > 0.5 ? (1 - alpha) / alpha : alpha / (1 - alpha);
+  const double denominator = alpha * d + (1 - alpha) * p.z();
+  if (!(p.z() > -w * d) || !(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() / denominator);
+}
+
+inline std::optional<Eigen::Vector3d> unproject_eucm(double alpha, double beta, const point2& p) {
+  const double r2 = p.squaredNorm();
+  const double root = 1 - (2 * alpha - 1) * beta * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(root) + 1 - alpha);
+  return Eigen::Vector3d(p.x(), p.y(), z).normalized();
+}
+
+/// Longitude to the right and latitude downwards over the whole image.
+inline std::optional<point2> project_sphere(double width, double height, const Eigen::Vector3d& p) {
+  if (p.squaredNorm() == 0) return std::nullopt;
+  const double longitude = std::atan2(p.x(), p.z());
+  const double latitude = std::atan2(p.y(), std::hypot(p.x(), p.z()));
+  return point2((longitude / (2 * std::numbers::pi) + 0.5) * width,
+                (latitude / std::numbers::pi + 0.5) * height);
+}
+
+inline Eigen::Vector3d unproject_sphere(double width, double height, const point2& pixel) {
+  const double longitude = 2 * std::numbers::pi * (pixel.x() / width - 0.5);
+  const double latitude = std::numbers::pi * (pixel.y() / height - 0.5);
+  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+          std::cos(latitude) * std::cos(longitude)};
+}
+
+}  // namespace detail
+
+inline std::optional<Eigen::Vector2d> project(const camera& camera,
+                                              const Eigen::Vector3d& p_in_camera) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!p_in_camera.allFinite()) return std::nullopt;
+  std::optional<detail::point2> p;
+  switch (camera.model) {
+    case camera_model::equirectangular:
+      return detail::project_sphere(camera.parameters[0], camera.parameters[1], p_in_camera);
+    case camera_model::simple_division:
+    case camera_model::division:
+      p = detail::project_division(k[0], p_in_camera);
+      break;
+    case camera_model::eucm:
+      p = detail::project_eucm(k[0], k[1], p_in_camera);
+      break;
+    default:
+      p = detail::on_plane(detail::plane_of(camera.model), p_in_camera);
+      if (p) p = detail::distort(camera.model, k, *p);
+  }
+  if (!p) return std::nullopt;
+  return Eigen::Vector2d(camera.fx() * p->x() + camera.cx(), camera.fy() * p->y() + camera.cy());
+}
+
+inline std::optional<Eigen::Vector3d> unproject(const camera& camera,
+                                                const Eigen::Vector2d& pixel) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!pixel.allFinite()) return std::nullopt;
+  if (camera.model == camera_model::equirectangular)
+    return detail::unproject_sphere(camera.parameters[0], camera.parameters[1], pixel);
+  const detail::point2 p((pixel.x() - camera.cx()) / camera.fx(),
+                         (pixel.y() - camera.cy()) / camera.fy());
+  switch (camera.model) {
+    case camera_model::simple_division:
+    case camera_model::division:
+      return Eigen::Vector3d(p.x(), p.y(), 1 + k[0] * p.squaredNorm()).normalized();
+    case camera_model::eucm:
+      return detail::unproject_eucm(k[0], k[1], p);
+    default: {
+      const auto undistorted = detail::undistort(camera.model, k, p);
+      if (!undistorted) return std::nullopt;
+      return detail::off_plane(detail::plane_of(camera.model), *undistorted);
+    }
+  }
+}
+
+}  // namespace aib::math
+
+// aib/search/triangle_tree.hpp
+
+namespace aib::search {
+
+/// Corners of a triangle.
+struct corners {
+  float at[3][3];  ///< [corner][axis]
+
+  corners() = default;
+  corners(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c)
+      : at{{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}} {}
+
+  template <class Scalar>
+  [[nodiscard]] Eigen::Matrix<Scalar, 3, 1> corner(int k) const {
+    return Eigen::Vector3f(at[k]).cast<Scalar>();
+  }
+};
+
+/// The part of a triangle that a point of it belongs to: its face, edge k (from corner k to the
+/// next), or corner k.
+enum class triangle_part { face, edge, corner };
+
+/// The point of a triangle that is nearest to a query.
+struct surface_point {
+  Eigen::Vector3d position;
+  triangle_part part = triangle_part::face;
+  int k = 0;  ///< which edge or corner
+};
+
+/// The point of a triangle that is nearest to p. A triangle without area is treated as its edges.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+[[nodiscard]] inline surface_point nearest_on_triangle(const Eigen::Vector3d& p,
+                                                       const std::array<Eigen::Vector3d, 3>& t) {
+  const Eigen::Vector3d ab = t[1] - t[0], ac = t[2] - t[0];
+  const Eigen::Vector3d ap = p - t[0], bp = p - t[1], cp = p - t[2];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {t[0], triangle_part::corner, 0};
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {t[1], triangle_part::corner, 1};
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {t[2], triangle_part::corner, 2};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    return {t[0] + d1 / (d1 - d3) * ab, triangle_part::edge, 0};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return {t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]), triangle_part::edge, 1};
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    return {t[0] + d2 / (d2 - d6) * ac, triangle_part::edge, 2};
+  }
+  const double sum = va + vb + vc;
+  return {t[0] + vb / sum * ab + vc / sum * ac, triangle_part::face, 0};
+}
+
+inline namespace AIB_ISA {
+
+/// The range of a triangle on one axis.
+inline std::pair<float, float> range_of(const corners& t, int axis) {
+  return {std::min({t.at[0][axis], t.at[1][axis], t.at[2][axis]}),
+          std::max({t.at[0][axis], t.at[1][axis], t.at[2][axis]})};
+}
+
+/// The triangle that is nearest to a query, and how near.
+struct nearest_triangle {
+  std::uint32_t place = 0;  ///< in the order of the tree
+  double squared = std::numeric_limits<double>::infinity();
+};
+
+/// Triangles in the order of a curve under a tree of boxes, eight to a node. Triangles must be
+/// finite and not empty.
+class triangle_tree {
+ public:
+  triangle_tree(std::span<const corners> triangles,
+                const curve& order,
+                unsigned threads = 0,
+                const control& control = {});
+
+  [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+
+  /// Index, as given, of the triangle at a place.
+  [[nodiscard]] std::uint32_t index(std::uint32_t place) const { return index_[place]; }
+
+  /// Corners of the triangle at a place.
+  [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t place) const {
+    const corners& t = triangles_[place];
+    return {t.corner<double>(0), t.corner<double>(1), t.corner<double>(2)};
+  }
+
+  /// The nearest triangle, exact in double. `first_guess` is a place that is probably near; it
+  /// changes the time, and among equally near triangles the answer, but not the distance.
+  [[nodiscard]] nearest_triangle nearest(const Eigen::Vector3f& p, std::uint32_t first_guess) const;
+
+ private:
+  void try_triangle(const Eigen::Vector3d& p, std::uint32_t place, nearest_triangle& best) const;
+
+  buffer<corners> triangles_;
+  buffer<std::uint32_t> index_;
+  std::vector<buffer<box_node>> levels_;
+};
+
+inline triangle_tree::triangle_tree(std::span<const corners> triangles,
+                                    const curve& order,
+                                    unsigned threads,
+                                    const control& control)
+    : triangles_(triangles.size()), index_(triangles.size()) {
+  if (threads == 0) threads = available_threads();
+  std::vector<Eigen::Vector3f> centres;
+  centres.reserve(triangles.size());
+  for (const corners& t : triangles)
+    centres.push_back(t.corner<float>(0) / 3 + t.corner<float>(1) / 3 + t.corner<float>(2) / 3);
+  const auto sorted = sort_along(centres, order, threads, control);
+  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    index_[i] = static_cast<std::uint32_t>(sorted[i] & mask);
+    triangles_[i] = triangles[index_[i]];
+  }
+  const std::span<const corners> leaves = triangles_.span();
+  levels_.push_back(boxes_above(leaves, threads, control));
+  while (levels_.back().size() > 1) {
+    const std::span<const box_node> below = levels_.back().span();
+    levels_.push_back(boxes_above(below, threads, control));
+  }
+}
+
+inline void triangle_tree::try_triangle(const Eigen::Vector3d& p,
+                                        std::uint32_t place,
+                                        nearest_triangle& best) const {
+  const Eigen::Vector3d offset = nearest_on_triangle(p, triangle(place)).position - p;
+  const double squared = offset.squaredNorm();
+  if (squared < best.squared) best = {place, squared};
+}
+
+/// Boxes are measured in float, each operation rounded once; a bound that is larger by more than
+/// their sum of rounding errors never cuts off a nearer triangle.
+inline float bound_above(double squared) {
+  return static_cast<float>(std::min(squared * (1 + 1e-5), 3e38)) +
+         std::numeric_limits<float>::min();
+}
+
+inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
+                                               std::uint32_t first_guess) const {
+  const query q(p.x(), p.y(), p.z());
+  const Eigen::Vector3d exact = p.cast<double>();
+  nearest_triangle best;
+  try_triangle(exact, first_guess, best);
+  pending_boxes pending;
+  pending.push_root(levels_.size());
+  while (!pending.empty()) {
+    const pending_box box = pending.pop();
+    const float bound = bound_above(best.squared);
+    if (!(box.squared < bound)) continue;
+    if (box.level == pending_box::leaf) {
+      try_triangle(exact, box.index, best);
+    } else {
+      const f32x8 d = squared_distances(q.axis, q.axis, levels_[box.level][box.index]);
+      pending.push_children(box, d, less(d, f32x8::broadcast(bound)));
+    }
+  }
+  return best;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/mesh/distances.hpp
+
+namespace aib::mesh {
+
+/// The finite triangles of a mesh under a search tree, for many questions.
+class surface_index {
+ public:
+  /// Throws undefined_error if no triangle is finite.
+  explicit surface_index(const mesh& surface, unsigned threads = 0, const control& control = {});
+
+  [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
+  [[nodiscard]] const search::triangle_tree& tree() const { return tree_; }
+
+  /// Index in the mesh of the triangle at a place of the tree.
+  [[nodiscard]] std::size_t triangle_at(std::uint32_t place) const {
+    return kept_[tree_.index(place)];
+  }
+
+ private:
+  std::vector<search::corners> finite_triangles(const mesh& surface);
+  static std::vector<Eigen::Vector3f> first_corners(std::span<const search::corners> triangles);
+
+  Eigen::Vector3d origin_;
+  std::vector<std::size_t> kept_;
+  std::vector<search::corners> corners_;
+  search::triangle_tree tree_;
+};
+
+/// Where on a mesh each point of a cloud is nearest.
+struct closest_points {
+  std::vector<float> distance;          ///< NaN for a point that is not finite
+  std::vector<std::uint32_t> triangle;  ///< index in the mesh; ~0 for a point that is not finite
+};
+
+/// The nearest triangle of each point, exact.
+/// Throws undefined_error if the cloud has no finite point.
+closest_points closest(const cloud::cloud& points,
+                       const surface_index& surface,
+                       unsigned threads = 0,
+                       const control& control = {});
+
+/// Distances from the points of a cloud to the surface of a mesh: exact point-to-triangle
+/// distances, without the floor that sampling the mesh would put under them.
+///
+/// Throws undefined_error if the cloud has no finite point or the mesh no finite triangle.
+[[nodiscard]] cloud::distances distances(const cloud::cloud& points,
+                                         const mesh& surface,
+                                         const cloud::distance_options& options = {});
+
+/// Compares an estimated cloud with a reference mesh: accuracy to the surface itself, completeness
+/// and recall by samples of it (sample::mesh).
+[[nodiscard]] cloud::comparison compare(const cloud::cloud& estimate,
+                                        const mesh& reference,
+                                        const cloud::cloud& samples,
+                                        const cloud::compare_options& options = {});
+
+inline std::vector<search::corners> surface_index::finite_triangles(const mesh& surface) {
+  std::vector<search::corners> finite;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Eigen::Vector3f corner[] = {surface.vertices[a], surface.vertices[b],
+                                      surface.vertices[c]};
+    if (!std::all_of(corner, corner + 3, cloud::is_finite)) continue;
+    finite.emplace_back(corner[0], corner[1], corner[2]);
+    kept_.push_back(t);
+  }
+  if (finite.empty()) {
+    throw undefined_error(
+        message("mesh::distances: no finite triangle (", surface.triangles.size(), " triangles)"));
+  }
+  return finite;
+}
+
+inline std::vector<Eigen::Vector3f> surface_index::first_corners(
+    std::span<const search::corners> triangles) {
+  std::vector<Eigen::Vector3f> first;
+  first.reserve(triangles.size());
+  for (const search::corners& t : triangles) first.push_back(t.corner<float>(0));
+  return first;
+}
+
+inline surface_index::surface_index(const mesh& surface, unsigned threads, const control& control)
+    : origin_(surface.origin),
+      corners_(finite_triangles(surface)),
+      tree_(corners_, search::common_curve(first_corners(corners_), {}), threads, control) {}
+
+inline closest_points closest(const cloud::cloud& points,
+                              const surface_index& surface,
+                              unsigned threads,
+                              const control& control) {
+  const cloud::finite_points from(points, surface.origin());
+  cloud::detail::demand_points("mesh::distances", "estimated", from);
+  if (threads == 0) threads = available_threads();
+  const search::curve order = search::common_curve(from.points(), {});
+  const auto sorted = search::sort_along(from.points(), order, threads, control);
+  const std::uint64_t mask = (std::uint64_t{1} << order.index_bits) - 1;
+  closest_points found{std::vector<float>(points.size(), std::numeric_limits<float>::quiet_NaN()),
+                       std::vector<std::uint32_t>(points.size(), ~std::uint32_t{0})};
+  for_each_chunk(sorted.size(), 4096, threads, control, [&](const chunk& c) {
+    std::uint32_t near = 0;
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const std::size_t p = sorted[i] & mask;
+      const auto best = surface.tree().nearest(from.points()[p], near);
+      near = best.place;
+      found.distance[from.source_index(p)] = static_cast<float>(std::sqrt(best.squared));
+      found.triangle[from.source_index(p)] =
+          static_cast<std::uint32_t>(surface.triangle_at(best.place));
+    }
+  });
+  return found;
+}
+
+inline cloud::distances distances(const cloud::cloud& points,
+                                  const mesh& surface,
+                                  const cloud::distance_options& options) {
+  const surface_index index(surface, options.threads, options.control);
+  auto found = closest(points, index, options.threads, options.control);
+  return cloud::distances(std::move(found.distance), options);
+}
+
+inline cloud::comparison compare(const cloud::cloud& estimate,
+                                 const mesh& reference,
+                                 const cloud::cloud& samples,
+                                 const cloud::compare_options& options) {
+  const cloud::distance_options how{.max_distance = options.max_distance,
+                                    .rule = options.rule,
+                                    .threads = options.threads,
+                                    .control = options.control};
+  return cloud::score(distances(estimate, reference, how), cloud::distances(samples, estimate, how),
+                      options.tau);
+}
+
+}  // namespace aib::mesh
+
+// aib/mesh/surface.hpp
+
+namespace aib::mesh {
+
+/// Corners of a triangle, counted from the origin of its mesh.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 3> corners(const mesh& m, std::size_t t) {
+  const auto& [a, b, c] = m.triangles[t];
+  return {m.vertices[a].cast<double>(), m.vertices[b].cast<double>(), m.vertices[c].cast<double>()};
+}
+
+/// Area of a triangle; 0 where a corner is not finite.
+[[nodiscard]] inline double area(const mesh& m, std::size_t t) {
+  const auto [a, b, c] = corners(m, t);
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const double twice = ab.cross(ac).norm();
+  return std::isfinite(twice) ? twice / 2 : 0;
+}
+
+/// Area of all triangles.
+[[nodiscard]] inline double area(const mesh& m) {
+  double total = 0;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) total += area(m, t);
+  return total;
+}
+
+}  // namespace aib::mesh
+
+// aib/mesh/transform.hpp
+
+namespace aib::mesh {
+
+/// The mesh in frame b. Vertices are moved in double and counted from their new natural origin.
+[[nodiscard]] inline mesh operator*(const math::sim3& b_from_a, const mesh& in_a) {
+  cloud::placed_points placed = cloud::place(
+      in_a.vertices.size(), [&](std::size_t i) { return b_from_a * in_a.position(i); });
+  mesh in_b = in_a;
+  in_b.origin = placed.origin;
+  in_b.vertices = std::move(placed.points);
+  return in_b;
+}
+
+[[nodiscard]] inline mesh operator*(const math::rigid3& b_from_a, const mesh& in_a) {
+  return math::sim3{1, b_from_a.rotation, b_from_a.translation} * in_a;
+}
+
+}  // namespace aib::mesh
+
+// aib/pose/angle_bins.hpp
+
+namespace aib::pose {
+
+/// Bins of angles between ascending edges in degrees: bin k holds edge[k - 1] <= angle < edge[k].
+class angle_bins {
+ public:
+  /// Sorts the edges and drops repeated ones. Throws argument_error unless each is in (0, 360].
+  explicit angle_bins(std::vector<double> edges_deg) : edges_deg_(std::move(edges_deg)) {
+    for (const double e : edges_deg_) {
+      if (e > 0 && e <= 360) continue;
+      throw argument_error(message("angle_bins: edges in (0, 360] degrees expected, found ", e));
+    }
+    std::sort(edges_deg_.begin(), edges_deg_.end());
+    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end()), edges_deg_.end());
+  }
+
+  [[nodiscard]] std::size_t size() const { return edges_deg_.size() + 1; }
+  [[nodiscard]] const std::vector<double>& edges_deg() const { return edges_deg_; }
+
+  /// Bin of an angle: the number of edges that it reaches.
+  [[nodiscard]] std::size_t find(double angle_deg) const {
+    return static_cast<std::size_t>(
+        std::upper_bound(edges_deg_.begin(), edges_deg_.end(), angle_deg) - edges_deg_.begin());
+  }
+
+  /// Number of bins that lie wholly below an edge. Throws argument_error if it is none of ours.
+  [[nodiscard]] std::size_t bins_below(double edge_deg) const {
+    const auto at = std::lower_bound(edges_deg_.begin(), edges_deg_.end(), edge_deg);
+    if (at == edges_deg_.end() || *at != edge_deg)
+      throw argument_error(message("angle_bins: ", edge_deg, " degrees is not an edge"));
+    return static_cast<std::size_t>(at - edges_deg_.begin()) + 1;
+  }
+
+ private:
+  std::vector<double> edges_deg_;
+};
+
+/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root, an
+/// arc function or a search: the leading bits of the key choose a cell, which holds at most one
+/// edge. Where a key is too near to an edge for its rounding, or a cell holds several edges, the
+/// table says so, and the caller calculates the angle.
+class key_table {
+ public:
+  struct cell {
+    double edge;           ///< key; infinite: no edge here; NaN: ask the angle
+    std::uint32_t bin[2];  ///< of keys above, of keys below the edge: indexed by a sign bit
+  };
+
+  /// Cells of a table.
+  static constexpr std::size_t size() { return cell_of(1) + 1; }
+
+  /// Keys nearer to an edge than this are not trusted: tens of roundings of a key in [0, 1].
+  static constexpr double doubt = 1e-14;
+
+  /// Cell of a key.
+  static constexpr std::size_t cell_of(double key) {
+    return (std::bit_cast<std::uint64_t>(key > lowest ? key : lowest) >> shift) - first;
+  }
+
+  /// keys   keys of the edges, in any order
+  /// bin    bin of a key, std::size_t(double)
+  template <class BinOfKey>
+  key_table(std::vector<double> keys, BinOfKey&& bin) {
+    std::sort(keys.begin(), keys.end());
+    cells_.reserve(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double low = i == 0 ? 0 : lower_end(i);
+      const double high = std::min(1.0, lower_end(i + 1));
+      const auto from = std::lower_bound(keys.begin(), keys.end(), low - doubt);
+      const auto to = std::upper_bound(keys.begin(), keys.end(), high + doubt);
+      cells_.push_back(from == to ? without_edge(bin((low + high) / 2))
+                                  : with_edges(low, *from, *(to - 1), high, bin));
+    }
+  }
+
+  [[nodiscard]] const std::vector<cell>& cells() const { return cells_; }
+
+ private:
+  static constexpr double lowest = 0x1p-20;
+  static constexpr int shift = 46;  // leaves 6 of 52 fraction bits: 64 cells an octave
+  static constexpr std::uint64_t first = std::bit_cast<std::uint64_t>(lowest) >> shift;
+
+  static double lower_end(std::size_t i) { return std::bit_cast<double>((first + i) << shift); }
+
+  static cell without_edge(std::size_t bin) {
+    const auto b = static_cast<std::uint32_t>(bin);
+    return {std::numeric_limits<double>::infinity(), {b, b}};
+  }
+
+  template <class BinOfKey>
+  static cell with_edges(double low, double edge, double last, double high, BinOfKey& bin) {
+    if (last - edge > doubt / 4) return {std::numeric_limits<double>::quiet_NaN(), {0, 0}};
+    return {edge,
+            {static_cast<std::uint32_t>(bin(std::min(1.0, (edge + high) / 2))),
+             static_cast<std::uint32_t>(bin(std::max(0.0, (low + edge) / 2)))}};
+  }
+
+  std::vector<cell> cells_;
+};
+
+/// Key of a rotation error: sin^2 of half the angle.
+[[nodiscard]] inline key_table rotation_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(e) / 2);
+    if (e <= 180) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(math::degrees(2 * std::asin(std::sqrt(key)))); }};
+}
+
+/// Key of a direction error below 90 degrees: sin^2 of the angle.
+[[nodiscard]] inline key_table front_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(e));
+    if (e <= 90) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(math::degrees(std::asin(std::sqrt(key)))); }};
+}
+
+/// Key of a direction error above 90 degrees: sin^2 of what is missing to 180.
+[[nodiscard]] inline key_table back_table(const angle_bins& bins) {
+  std::vector<double> keys;
+  for (const double e : bins.edges_deg()) {
+    const double s = std::sin(math::radians(180 - e));
+    if (e >= 90 && e <= 180) keys.push_back(s * s);
+  }
+  return {std::move(keys),
+          [&](double key) { return bins.find(180 - math::degrees(std::asin(std::sqrt(key)))); }};
+}
+
+}  // namespace aib::pose
+
+// aib/stats/summary.hpp
+
+namespace aib::stats {
+
+/// Statistics of a set of errors, named as evo names them.
+struct summary {
+  std::uint64_t count;
+  double rmse;
+  double mean;
+  double median;
+  double std;  ///< population (ddof 0)
+  double min;
+  double max;
+  double sse;  ///< sum of squares
+};
+
+/// Throws undefined_error if there is no value.
+inline summary summarize(std::span<const double> errors) {
+  if (errors.empty()) throw undefined_error("stats::summarize: no values");
+  moments m;
+  double sse = 0;
+  for (const double e : errors) {
+    m.add(e);
+    sse += e * e;
+  }
+  return {.count = m.count(),
+          .rmse = std::sqrt(sse / static_cast<double>(m.count())),
+          .mean = m.mean(),
+          .median = median(errors),
+          .std = m.deviation(),
+          .min = m.min(),
+          .max = m.max(),
+          .sse = sse};
+}
+
+}  // namespace aib::stats
+
+// aib/pose/pose_relation.hpp
+
+namespace aib::pose {
+
+/// What of the motion between two poses is the error, as evo names it.
+enum class pose_relation {
+  translation,           ///< |t|
+  rotation_part,         ///< |R - I|, Frobenius
+  full,                  ///< |[R t] - [I 0]|, Frobenius
+  angle_deg,             ///< angle of R
+  angle_rad,             ///< angle of R
+  point_distance,        ///< difference of two distances (rpe); the distance itself (ape)
+  point_distance_ratio,  ///< rpe: that difference in percent of the reference's distance
+};
+
+inline constexpr std::array<std::string_view, 7> pose_relation_names = {
+    "translation",    "rotation_part",        "full", "angle_deg", "angle_rad",
+    "point_distance", "point_distance_ratio",
+};
+
+[[nodiscard]] constexpr std::string_view name(pose_relation r) {
+  return pose_relation_names[static_cast<std::size_t>(r)];
+}
+
+/// Errors of frames or of pairs of frames, and their statistics.
+struct pose_errors {
+  stats::summary summary;
+  std::vector<double> errors;      ///< one a frame or pair
+  std::vector<std::size_t> index;  ///< the frame of each, the later one of a pair
+};
+
+/// Size of a motion that should be none.
+[[nodiscard]] inline double magnitude(pose_relation relation, const math::rigid3& error) {
+  const double rotation = (error.rotation - Eigen::Matrix3d::Identity()).norm();
+  switch (relation) {
+    case pose_relation::rotation_part:
+      return rotation;
+    case pose_relation::full:
+      return std::hypot(rotation, error.translation.norm());
+    case pose_relation::angle_deg:
+      return math::degrees(math::rotation_angle(error.rotation));
+    case pose_relation::angle_rad:
+      return math::rotation_angle(error.rotation);
+    default:
+      return error.translation.norm();
+  }
+}
+
+}  // namespace aib::pose
+
+// aib/pose/ape.hpp
+
+namespace aib::pose {
+
+struct ape_options {
+  pose_relation relation = pose_relation::translation;
+};
+
+/// Absolute pose error: of each frame the motion E = est^-1 ref. Aligns nothing. Frames without a
+/// finite pose are passed over.
+///
+/// Invariant to a common rigid motion. Throws argument_error if the trajectories are not associated
+/// or the relation is a ratio, undefined_error if no frame is registered on both sides.
+/// Source: Sturm et al., IROS 2012, Sec. IV-B; evo, core/metrics.py, APE.
+inline pose_errors ape(const trajectory& estimate,
+                       const trajectory& reference,
+                       const ape_options& options = {}) {
+  if (options.relation == pose_relation::point_distance_ratio)
+    throw argument_error("ape: point_distance_ratio is a relation of pairs; see rpe");
+  const registered_frames frames = registered("ape", estimate, reference);
+  if (frames.index.empty()) {
+    throw undefined_error(
+        message("ape: none of ", estimate.size(), " frames has a finite pose on both sides"));
+  }
+  pose_errors out{.summary = {}, .errors = {}, .index = frames.index};
+  for (std::size_t i = 0; i < frames.index.size(); ++i)
+    out.errors.push_back(
+        magnitude(options.relation, frames.estimate[i].inverse() * frames.reference[i]));
+  out.summary = stats::summarize(out.errors);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/associate.hpp
+
+namespace aib::pose {
+
+enum class match_by { name, stamp, index };
+
+/// How often a pose may be matched.
+enum class association_rule {
+  one_to_one,
+  evo,  ///< each pose of the shorter trajectory takes its nearest stamp, taken or not
+};
+
+struct associate_options {
+  match_by by = match_by::name;
+  double max_gap_s = 0.01;        ///< stamps: largest difference, inclusive
+  double offset_s = 0;            ///< stamps: added to those of the estimate
+  bool ignore_case = false;       ///< names: IMG_1.jpg is img_1.jpg
+  bool ignore_extension = false;  ///< names: 0001.png is 0001.exr
+  bool ignore_folder = false;     ///< names: images/0001.png is 0001.png
+  association_rule rule = association_rule::one_to_one;
+};
+
+/// Poses that belong together, and what was left out.
+struct association {
+  trajectory estimate;                      ///< in the order of the reference (evo: of the shorter)
+  trajectory reference;                     ///< as long
+  std::vector<std::size_t> estimate_index;  ///< where each pose stood
+  std::vector<std::size_t> reference_index;  ///< where each pose stood
+  std::size_t n_matched;
+  std::size_t n_estimate_only;   ///< poses of the estimate without a partner
+  std::size_t n_reference_only;  ///< poses of the reference without a partner
+};
+
+/// Pairs the poses of an estimate with those of a reference: by image name, by the nearest time
+/// stamp (closest pairs first, each pose once), or by position in the list.
+///
+/// Throws argument_error if names (stamps) are missing or not unique under the rules,
+/// undefined_error if no pose matches; it says which rule on names would have helped.
+association associate(const trajectory& estimate,
+                      const trajectory& reference,
+                      const associate_options& options = {});
+
+namespace detail {
+
+struct index_pair {
+  std::size_t estimate;
+  std::size_t reference;
+};
+
+inline std::string name_key(std::string_view name, const associate_options& rules) {
+  if (rules.ignore_folder) {
+    const std::size_t slash = name.find_last_of("/\\");
+    if (slash != std::string_view::npos) name.remove_prefix(slash + 1);
+  }
+  if (rules.ignore_extension) {
+    const std::size_t slash = name.find_last_of("/\\"), dot = name.find_last_of('.');
+    const std::size_t stem = slash == std::string_view::npos ? 0 : slash + 1;
+    if (dot != std::string_view::npos && dot > stem) name = name.substr(0, dot);
+  }
+  std::string key(name);
+  if (rules.ignore_case) {
+    for (char& c : key) {
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+  }
+  return key;
+}
+
+inline std::unordered_map<std::string, std::size_t> name_table(std::string_view whose,
+                                                               const trajectory& t,
+                                                               const associate_options& rules) {
+  std::unordered_map<std::string, std::size_t> table;
+  for (std::size_t i = 0; i < t.names.size(); ++i) {
+    const auto [at, fresh] = table.emplace(name_key(t.names[i], rules), i);
+    if (fresh) continue;
+    throw argument_error(message("associate: two poses of the ", whose, " have one name: \"",
+                                 t.names[at->second], "\" and \"", t.names[i], "\""));
+  }
+  return table;
+}
+
+inline std::vector<index_pair> match_names(const trajectory& estimate,
+                                           const trajectory& reference,
+                                           const associate_options& options) {
+  if (estimate.names.size() != estimate.size() || reference.names.size() != reference.size())
+    throw argument_error("associate: by name, but not every pose has one; try stamp or index");
+  const auto table = name_table("estimate", estimate, options);
+  name_table("reference", reference, options);
+  std::vector<index_pair> pairs;
+  for (std::size_t r = 0; r < reference.size(); ++r) {
+    const auto at = table.find(name_key(reference.names[r], options));
+    if (at != table.end()) pairs.push_back({at->second, r});
+  }
+  return pairs;
+}
+
+/// Indices of stamps in ascending order, equal ones in their own order.
+inline std::vector<std::size_t> by_stamp(const std::vector<double>& stamps) {
+  std::vector<std::size_t> order(stamps.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
+  return order;
+}
+
+/// A sorted list whose places are taken one after another.
+class free_places {
+ public:
+  explicit free_places(std::size_t n) : left_(n + 1), right_(n + 1) {
+    std::iota(left_.begin(), left_.end(), std::size_t{0});
+    std::iota(right_.begin(), right_.end(), std::size_t{0});
+  }
+  /// Nearest free place at or above i; the length where there is none.
+  std::size_t at_or_above(std::size_t i) { return root(right_, i); }
+  /// One more than the nearest free place below i; 0 where there is none.
+  std::size_t end_below(std::size_t i) { return root(left_, i); }
+  void take(std::size_t i) {
+    right_[i] = i + 1;
+    left_[i + 1] = i;
+  }
+
+ private:
+  static std::size_t root(std::vector<std::size_t>& parent, std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  std::vector<std::size_t> left_, right_;
+};
+
+/// Pairs in ascending order of their gap, each stamp once.
+inline std::vector<index_pair> match_stamps(const std::vector<double>& estimate,
+                                            const std::vector<double>& reference,
+                                            const associate_options& options) {
+  const std::vector<std::size_t> order = by_stamp(reference);
+  struct candidate {
+    double gap;
+    std::size_t place, estimate;
+    bool operator>(const candidate& o) const {
+      if (gap != o.gap) return gap > o.gap;
+      return place != o.place ? place > o.place : estimate > o.estimate;
+    }
+  };
+  std::priority_queue<candidate, std::vector<candidate>, std::greater<>> nearest;
+  free_places places(order.size());
+  const auto offer = [&](std::size_t e, std::size_t place) {
+    const double gap = std::abs(reference[order[place]] - (estimate[e] + options.offset_s));
+    if (gap <= options.max_gap_s) nearest.push({gap, place, e});
+  };
+  const auto place_of = [&](std::size_t e) {
+    const auto at =
+        std::lower_bound(order.begin(), order.end(), estimate[e] + options.offset_s,
+                         [&](std::size_t r, double stamp) { return reference[r] < stamp; });
+    return static_cast<std::size_t>(at - order.begin());
+  };
+  const auto offer_neighbours = [&](std::size_t e) {
+    const std::size_t above = places.at_or_above(place_of(e)),
+                      below = places.end_below(place_of(e));
+    if (above < order.size()) offer(e, above);
+    if (below > 0) offer(e, below - 1);
+  };
+  for (std::size_t e = 0; e < estimate.size(); ++e) offer_neighbours(e);
+  std::vector<bool> matched(estimate.size());
+  std::vector<index_pair> pairs;
+  while (!nearest.empty()) {
+    const candidate c = nearest.top();
+    nearest.pop();
+    if (matched[c.estimate]) continue;
+    if (places.at_or_above(c.place) != c.place) {  // taken meanwhile
+      offer_neighbours(c.estimate);
+      continue;
+    }
+    places.take(c.place);
+    matched[c.estimate] = true;
+    pairs.push_back({c.estimate, order[c.place]});
+  }
+  std::sort(pairs.begin(), pairs.end(),
+            [](const index_pair& a, const index_pair& b) { return a.reference < b.reference; });
+  return pairs;
+}
+
+/// evo's core/sync.py: every stamp of the shorter list, nearest one of the longer, repetitions
+/// kept.
+inline std::vector<index_pair> match_stamps_as_evo(const std::vector<double>& estimate,
+                                                   const std::vector<double>& reference,
+                                                   const associate_options& options) {
+  const bool estimate_longer = estimate.size() > reference.size();
+  const auto& shorter = estimate_longer ? reference : estimate;
+  const auto& longer = estimate_longer ? estimate : reference;
+  const double offset = estimate_longer ? options.offset_s : -options.offset_s;
+  const std::vector<std::size_t> order = by_stamp(longer);
+  std::vector<index_pair> pairs;
+  for (std::size_t s = 0; s < shorter.size(); ++s) {
+    std::optional<std::size_t> best;
+    double best_gap = std::numeric_limits<double>::infinity();
+    const auto at =
+        std::lower_bound(order.begin(), order.end(), shorter[s] - offset,
+                         [&](std::size_t l, double stamp) { return longer[l] < stamp; });
+    const auto begin = at - std::min<std::ptrdiff_t>(at - order.begin(), 2);
+    const auto end = at + std::min<std::ptrdiff_t>(order.end() - at, 2);
+    for (auto l = begin; l != end; ++l) {
+      const double gap = std::abs(shorter[s] - (longer[*l] + offset));
+      if (gap < best_gap || (gap == best_gap && *l < *best)) {
+        best = *l;
+        best_gap = gap;
+      }
+    }
+    if (!best || !(best_gap <= options.max_gap_s)) continue;
+    pairs.push_back(estimate_longer ? index_pair{*best, s} : index_pair{s, *best});
+  }
+  return pairs;
+}
+
+inline std::vector<index_pair> match_stamps(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            const associate_options& options) {
+  if (estimate.stamps_s.size() != estimate.size() || reference.stamps_s.size() != reference.size())
+    throw argument_error("associate: by stamp, but not every pose has one; try name or index");
+  for (const auto* stamps : {&estimate.stamps_s, &reference.stamps_s}) {
+    for (const double s : *stamps) {
+      if (!std::isfinite(s)) throw argument_error("associate: a stamp is not finite");
+    }
+  }
+  return options.rule == association_rule::evo
+             ? match_stamps_as_evo(estimate.stamps_s, reference.stamps_s, options)
+             : match_stamps(estimate.stamps_s, reference.stamps_s, options);
+}
+
+inline std::vector<index_pair> match_indices(std::size_t n) {
+  std::vector<index_pair> pairs;
+  for (std::size_t i = 0; i < n; ++i) pairs.push_back({i, i});
+  return pairs;
+}
+
+/// What a user may try who got nothing.
+inline std::string advice(const trajectory& estimate,
+                          const trajectory& reference,
+                          const associate_options& options) {
+  if (options.by == match_by::stamp)
+    return message("; stamps within ", options.max_gap_s, " s expected");
+  if (options.by == match_by::index) return "";
+  const std::string names = estimate.empty() || reference.empty()
+                                ? ""
+                                : message(", \"", estimate.names.front(), "\" in the one, \"",
+                                          reference.names.front(), "\" in the other");
+  associate_options loose = options;
+  loose.ignore_case = loose.ignore_extension = loose.ignore_folder = true;
+  std::unordered_map<std::string, std::size_t> table;
+  for (const std::string& name : estimate.names) table.emplace(name_key(name, loose), 0);
+  std::size_t n = 0;
+  for (const std::string& name : reference.names) n += table.count(name_key(name, loose));
+  if (n == 0) return names;
+  return message(names, "; ignore_folder, ignore_extension and ignore_case would match ", n);
+}
+
+inline std::size_t distinct(std::vector<std::size_t> indices) {
+  std::sort(indices.begin(), indices.end());
+  return static_cast<std::size_t>(std::unique(indices.begin(), indices.end()) - indices.begin());
+}
+
+}  // namespace detail
+
+inline association associate(const trajectory& estimate,
+                             const trajectory& reference,
+                             const associate_options& options) {
+  check(estimate);
+  check(reference);
+  if (!(options.max_gap_s >= 0))
+    throw argument_error(message("associate: max_gap >= 0 expected, found ", options.max_gap_s));
+  const std::vector<detail::index_pair> pairs =
+      options.by == match_by::name ? detail::match_names(estimate, reference, options)
+      : options.by == match_by::stamp
+          ? detail::match_stamps(estimate, reference, options)
+          : detail::match_indices(std::min(estimate.size(), reference.size()));
+  if (pairs.empty()) {
+    throw undefined_error(message(
+        "associate: none of ", estimate.size(), " estimated poses matches one of ",
+        reference.size(), " reference poses", detail::advice(estimate, reference, options)));
+  }
+  std::vector<std::size_t> e, r;
+  for (const detail::index_pair& p : pairs) {
+    e.push_back(p.estimate);
+    r.push_back(p.reference);
+  }
+  association out{.estimate = select(estimate, e),
+                  .reference = select(reference, r),
+                  .estimate_index = e,
+                  .reference_index = r,
+                  .n_matched = pairs.size(),
+                  .n_estimate_only = estimate.size() - detail::distinct(e),
+                  .n_reference_only = reference.size() - detail::distinct(r)};
+  if (options.by == match_by::name) out.estimate.names = out.reference.names;
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/joint_counts.hpp
+
+namespace aib::pose {
+
+/// Frame pairs counted by rotation error and by direction error at once, mergeable. Every recall,
+/// folded or signed, of one error or of both, is a sum of its cells.
+class joint_counts {
+ public:
+  joint_counts(angle_bins rotation, angle_bins translation)
+      : rotation_(std::move(rotation)), translation_(std::move(translation)), counts_(places()) {}
+
+  [[nodiscard]] const angle_bins& rotation() const { return rotation_; }
+  [[nodiscard]] const angle_bins& translation() const { return translation_; }
+
+  /// Translation bins, and one column of pairs without a direction.
+  [[nodiscard]] std::size_t columns() const { return translation_.size() + 1; }
+  [[nodiscard]] std::size_t places() const { return rotation_.size() * columns(); }
+
+  /// Index of the cell of a pair.
+  [[nodiscard]] std::size_t place(double rotation_deg,
+                                  std::optional<double> translation_deg) const {
+    const std::size_t column =
+        translation_deg ? translation_.find(*translation_deg) : translation_.size();
+    return rotation_.find(rotation_deg) * columns() + column;
+  }
+
+  /// Adds counts of the same layout.
+  template <class Integer>
+  void add(const std::vector<Integer>& counts) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += counts[i];
+  }
+
+  /// Throw argument_error if the bins differ.
+  joint_counts& operator+=(const joint_counts& other) {
+    check(other);
+    add(other.counts_);
+    return *this;
+  }
+  /// Takes a subset away.
+  joint_counts& operator-=(const joint_counts& subset) {
+    check(subset);
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] -= subset.counts_[i];
+    return *this;
+  }
+
+  /// Pairs in rotation bins [0, rotation_end) and columns [column, column_end).
+  [[nodiscard]] std::uint64_t sum(std::size_t rotation_end,
+                                  std::size_t column,
+                                  std::size_t column_end) const {
+    std::uint64_t n = 0;
+    for (std::size_t r = 0; r < rotation_end; ++r) {
+      for (std::size_t c = column; c < column_end; ++c) n += counts_[r * columns() + c];
+    }
+    return n;
+  }
+
+  [[nodiscard]] std::uint64_t pairs() const { return sum(rotation_.size(), 0, columns()); }
+  [[nodiscard]] std::uint64_t without_direction() const {
+    return sum(rotation_.size(), translation_.size(), columns());
+  }
+
+ private:
+  void check(const joint_counts& other) const {
+    if (other.rotation_.edges_deg() == rotation_.edges_deg() &&
+        other.translation_.edges_deg() == translation_.edges_deg())
+      return;
+    throw argument_error("joint_counts: the bins differ");
+  }
+
+  angle_bins rotation_, translation_;
+  std::vector<std::uint64_t> counts_;
+};
+
+}  // namespace aib::pose
+
+// aib/pose/auc_convention.hpp
+
+namespace aib::pose {
+
+/// Whose area under the recall curve. On one trajectory they give from 0.47 to 0.69: the convention
+/// is part of the number.
+enum class auc_convention {
+  paper,                ///< E_i E_j^-1, mean over tau = 1..T of min(RRA, RTA), signed directions
+  vggt,                 ///< E_i E_j^-1, max of both errors a pair, folded, last bin closed
+  posediffusion,        ///< as vggt with E_j E_i^-1; pi3 as well
+  posediffusion_torch,  ///< as posediffusion with T + 1 bins on [0, T]
+  da3,                  ///< E_i^-1 E_j from the first camera, else as vggt; depends on that camera
+  colmap,  ///< ordered pairs, trapezoids, inclusive, missing frames count as 180 degrees
+  exact,   ///< exact area under the recall of the max of both errors, signed
+};
+
+inline constexpr std::array<std::string_view, 7> auc_convention_names = {
+    "paper", "vggt", "posediffusion", "posediffusion_torch", "da3", "colmap", "exact",
+};
+
+[[nodiscard]] constexpr std::string_view name(auc_convention c) {
+  return auc_convention_names[static_cast<std::size_t>(c)];
+}
+
+/// Whether a convention takes opposite directions for the same.
+[[nodiscard]] constexpr bool folds(auc_convention c) {
+  return c == auc_convention::vggt || c == auc_convention::posediffusion ||
+         c == auc_convention::posediffusion_torch || c == auc_convention::da3;
+}
+
+/// Whether a convention's relative pose is E_j E_i^-1: that of the frames in reverse.
+[[nodiscard]] constexpr bool reverses(auc_convention c) {
+  return c == auc_convention::posediffusion || c == auc_convention::posediffusion_torch;
+}
+
+/// Whether a convention is a mean over thresholds, so that counts of pairs suffice.
+[[nodiscard]] constexpr bool is_binned(auc_convention c) {
+  return c == auc_convention::paper || folds(c);
+}
+
+/// Share of pairs by threshold, and its mean.
+struct recall {
+  double auc = 0;                ///< by the convention
+  double auc_signed = 0;         ///< the same with directions over 0..180 degrees
+  std::vector<double> rra = {};  ///< at 1, 2, .. max_deg degrees, strictly below
+  std::vector<double> rta = {};  ///< folded where the convention folds
+};
+
+/// The thresholds of a convention, the bins that they need, and their recalls. `convention` is one
+/// that is_binned, `max_deg` in [1, 180].
+class recall_thresholds {
+ public:
+  recall_thresholds(auc_convention convention, unsigned max_deg)
+      : convention_(convention), max_deg_(max_deg) {
+    if (!is_binned(convention))
+      throw argument_error(message("auc: convention ", name(convention), " has no thresholds"));
+    if (max_deg < 1 || max_deg > 180)
+      throw argument_error(message("auc: max_deg in [1, 180] expected, found ", max_deg));
+    for (unsigned k = 1; k <= max_deg; ++k) whole_.push_back({static_cast<double>(k), false});
+    averaged_ = convention == auc_convention::posediffusion_torch ? torch(max_deg) : whole_;
+    if (folds(convention)) averaged_.back().closed = true;
+  }
+
+  [[nodiscard]] angle_bins rotation_bins() const {
+    std::vector<double> edges;
+    for (const auto* list : {&whole_, &averaged_}) {
+      for (const threshold t : *list) edges.push_back(t.edge());
+    }
+    return angle_bins(std::move(edges));
+  }
+  [[nodiscard]] angle_bins translation_bins() const {
+    std::vector<double> edges;
+    for (const auto* list : {&whole_, &averaged_}) {
+      for (const threshold t : *list) {
+        edges.push_back(t.edge());
+        if (t.mirrored() > 0) edges.push_back(t.mirrored());
+      }
+    }
+    return angle_bins(std::move(edges));
+  }
+
+  /// Throws undefined_error if no pair has a direction.
+  [[nodiscard]] recall of(const joint_counts& counts) const;
+
+ private:
+  struct threshold {
+    double deg;
+    bool closed;  // an error equal to it counts as below
+
+    [[nodiscard]] double edge() const { return closed ? std::nextafter(deg, 360.0) : deg; }
+    /// Edge above which a folded error is below.
+    [[nodiscard]] double mirrored() const {
+      return closed ? 180 - deg : std::nextafter(180 - deg, 360.0);
+    }
+    [[nodiscard]] bool holds_right_angles() const { return deg > 90 || (closed && deg == 90); }
+  };
+
+  static std::vector<threshold> torch(unsigned max_deg) {
+    std::vector<threshold> out;
+    for (unsigned k = 1; k <= max_deg + 1; ++k)
+      out.push_back({static_cast<double>(k) * max_deg / (max_deg + 1), false});
+    return out;
+  }
+
+  /// Pairs below a threshold in their direction, with rotations in bins [0, rotation_end).
+  static std::uint64_t directed(const joint_counts& counts, std::size_t rotation_end, threshold t) {
+    return counts.sum(rotation_end, 0, counts.translation().bins_below(t.edge()));
+  }
+  static std::uint64_t folded(const joint_counts& counts, std::size_t rotation_end, threshold t) {
+    if (t.holds_right_angles()) return counts.sum(rotation_end, 0, counts.columns());
+    return directed(counts, rotation_end, t) +
+           counts.sum(rotation_end, counts.translation().bins_below(t.mirrored()),
+                      counts.translation().size());
+  }
+
+  auc_convention convention_;
+  unsigned max_deg_;
+  std::vector<threshold> whole_, averaged_;
+};
+
+inline recall recall_thresholds::of(const joint_counts& counts) const {
+  const std::uint64_t pairs = counts.pairs();
+  if (pairs == counts.without_direction()) {
+    throw undefined_error(
+        message("auc: none of ", pairs, " pairs has a direction; relative_angles still gives RRA"));
+  }
+  const auto n = static_cast<double>(pairs);
+  const bool folding = folds(convention_);
+  const std::size_t all = counts.rotation().size();
+  recall out;
+  for (const threshold t : whole_) {
+    const std::size_t below = counts.rotation().bins_below(t.deg);
+    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
+    out.rta.push_back(
+        static_cast<double>(folding ? folded(counts, all, t) : directed(counts, all, t)) / n);
+  }
+  if (convention_ == auc_convention::paper) {
+    for (std::size_t k = 0; k < whole_.size(); ++k) out.auc += std::min(out.rra[k], out.rta[k]);
+    out.auc_signed = out.auc /= max_deg_;
+    return out;
+  }
+  for (const threshold t : averaged_) {
+    const std::size_t below = counts.rotation().bins_below(t.edge());
+    out.auc += static_cast<double>(folded(counts, below, t)) / n;
+    out.auc_signed += static_cast<double>(directed(counts, below, t)) / n;
+  }
+  out.auc /= static_cast<double>(averaged_.size());
+  out.auc_signed /= static_cast<double>(averaged_.size());
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/baselines.hpp
+
+namespace aib::pose {
+
+/// The camera centres of a trajectory and which of their differences have a direction: those longer
+/// than 1e-9 of the longest and than 1e-12 of the largest coordinate.
+///
+/// Centres are divided by a power of two near their largest coordinate, so that no square
+/// overflows; lengths below are in that unit. The longest baseline is bounded by a ball and is
+/// searched for only when a baseline lies between the bounds.
+class baselines {
+ public:
+  /// poses     finite
+  /// padding   NaN entries behind the centres, for blocks that read over the end
+  explicit baselines(std::span<const math::rigid3> poses, std::size_t padding = 0);
+
+  [[nodiscard]] Eigen::Vector3d between(std::size_t i, std::size_t j) const {
+    return {x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+  }
+
+  /// Any longer baseline has a direction.
+  [[nodiscard]] double certain() const { return std::max(2e-9 * radius_, smallest_); }
+
+  [[nodiscard]] bool has_direction(std::size_t i, std::size_t j) const {
+    const double length = between(i, j).norm();
+    if (length > certain()) return true;
+    if (!(length > std::max(1e-9 * radius_, smallest_))) return false;
+    return length > std::max(1e-9 * longest(), smallest_);
+  }
+
+  std::vector<double> x, y, z;
+
+ private:
+  [[nodiscard]] double longest() const;
+
+  std::size_t size_;
+  double smallest_;    // 1e-12 of the largest coordinate
+  double radius_ = 0;  // of a ball about all centres, and at most the longest baseline
+  mutable std::once_flag searched_;
+  mutable double longest_ = 0;
+};
+
+inline baselines::baselines(std::span<const math::rigid3> poses, std::size_t padding)
+    : size_(poses.size()) {
+  double largest = 0;
+  for (const math::rigid3& p : poses)
+    largest = std::max(largest, p.translation.cwiseAbs().maxCoeff());
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  smallest_ = 1e-12 * std::scalbn(largest, -exponent);
+  for (auto* axis : {&x, &y, &z})
+    axis->resize(size_ + padding, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < size_; ++i) {
+    x[i] = std::scalbn(poses[i].translation.x(), -exponent);
+    y[i] = std::scalbn(poses[i].translation.y(), -exponent);
+    z[i] = std::scalbn(poses[i].translation.z(), -exponent);
+    radius_ = std::max(radius_, between(0, i).norm());  // about the first centre
+  }
+}
+
+inline double baselines::longest() const {
+  std::call_once(searched_, [&] {
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t j = i + 1; j < size_; ++j)
+        longest_ = std::max(longest_, between(i, j).norm());
+    }
+  });
+  return longest_;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/frame_pairs.hpp
+
+namespace aib::pose {
+
+/// Errors of the relative pose of two frames, in degrees, [0, 180].
+struct pair_error {
+  double rotation_deg;
+  std::optional<double> translation_deg;  ///< between directions; nothing where there is none
+};
+
+/// Frames j in [begin, end) that a frame i is paired with.
+struct pair_row {
+  std::size_t begin;
+  std::size_t end;
+};
+
+inline namespace AIB_ISA {
+
+/// The relative poses E_i E_j^-1 (camera-from-world) of all pairs of two trajectories, estimate
+/// against reference, in a stream: memory grows with the frames, never with the pairs.
+///
+/// With R the rotation of world_from_camera, C the camera centre, g the reference, p the estimate:
+///   rotation      R_ij = R_i^T R_j. The error is the angle of R_p,ij R_g,ij^T, which is that of
+///                 A_i^T A_j with the residual A_i = R_p,i R_g,i^T. With unit quaternions a_i of
+///                 A_i its half has the cosine |a_i . a_j|: one dot product of four numbers.
+///   translation   t_ij = R_i^T (C_j - C_i). The angle between t_p,ij and t_g,ij is that between
+///                 A_i^T (C_p,j - C_p,i) and C_g,j - C_g,i: a matrix of frame i, no pair matrix.
+/// Neither angle is calculated: sin^2 of it (of its half for rotations) is compared with the sin^2
+/// of the edges, see key_table. Results are the same bits for any number of threads.
+///
+/// A pair has no direction where a baseline is too short for one, see baselines.
+class frame_pairs {
+ public:
+  /// Poses world_from_camera, finite, rotations orthonormal.
+  /// Throws argument_error if the lengths differ.
+  frame_pairs(std::span<const math::rigid3> estimate, std::span<const math::rigid3> reference);
+
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] const baselines& estimate_baselines() const { return estimate_; }
+  [[nodiscard]] const baselines& reference_baselines() const { return reference_; }
+
+  /// Exact errors of one pair.
+  [[nodiscard]] pair_error error(std::size_t i, std::size_t j) const;
+
+  /// Counts the pairs of every frame i with the frames of `row(i)` by their errors.
+  ///
+  /// row   pair_row(std::size_t i), within [0, frames())
+  template <class Row>
+  [[nodiscard]] joint_counts count_rows(angle_bins rotation,
+                                        angle_bins translation,
+                                        Row&& row,
+                                        unsigned threads = 0,
+                                        const control& control = {}) const;
+
+  /// Counts every pair i < j.
+  [[nodiscard]] joint_counts count(angle_bins rotation,
+                                   angle_bins translation,
+                                   unsigned threads = 0,
+                                   const control& control = {}) const {
+    return count_rows(
+        std::move(rotation), std::move(translation),
+        [n = frames_](std::size_t i) {
+          return pair_row{i + 1, n};
+        },
+        threads, control);
+  }
+
+ private:
+  static constexpr std::size_t block = 64;  // pairs that are calculated together, in level 1 cache
+  static constexpr std::size_t rows = 16;   // of a chunk
+
+  struct block_keys {
+    double rotation[block], direction[block];
+    std::uint64_t rotation_cell[block], direction_cell[block];
+  };
+  /// Cells of directions: those of front_table, those of back_table, one that asks.
+  struct cell_tables {
+    std::vector<key_table::cell> rotation, direction;
+  };
+
+  [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
+  [[nodiscard]] static cell_tables tables_of(const joint_counts& bins);
+  void count_row(std::size_t i,
+                 pair_row row,
+                 const cell_tables& tables,
+                 const joint_counts& bins,
+                 std::vector<std::uint32_t>& counts) const;
+
+  std::size_t frames_;
+  std::array<std::vector<double>, 4> residual_;           // quaternions a_i
+  std::vector<Eigen::Matrix3d> reference_from_estimate_;  // A_i^T
+  baselines estimate_, reference_;
+};
+
+inline frame_pairs::frame_pairs(std::span<const math::rigid3> estimate,
+                                std::span<const math::rigid3> reference)
+    : frames_(estimate.size()), estimate_(estimate, block), reference_(reference, block) {
+  if (estimate.size() != reference.size()) {
+    throw argument_error(message("frame_pairs: as many estimated as reference poses expected, ",
+                                 "found ", estimate.size(), " and ", reference.size()));
+  }
+  for (auto& component : residual_) component.resize(frames_ + block);
+  reference_from_estimate_.reserve(frames_);
+  for (std::size_t i = 0; i < frames_; ++i) {
+    const Eigen::Matrix3d a = estimate[i].rotation * reference[i].rotation.transpose();
+    const math::quaternion q = math::quaternion_from(a);
+    residual_[0][i] = q.w;
+    residual_[1][i] = q.x;
+    residual_[2][i] = q.y;
+    residual_[3][i] = q.z;
+    reference_from_estimate_.push_back(a.transpose());
+  }
+}
+
+inline pair_error frame_pairs::error(std::size_t i, std::size_t j) const {
+  const auto a = [&](std::size_t k) {
+    return Eigen::Quaterniond(residual_[0][k], residual_[1][k], residual_[2][k], residual_[3][k]);
+  };
+  const Eigen::Quaterniond q = a(i).conjugate() * a(j);
+  pair_error out{math::degrees(2 * std::atan2(q.vec().norm(), std::abs(q.w()))), std::nullopt};
+  const Eigen::Vector3d g = reference_.between(i, j);
+  const Eigen::Vector3d p = estimate_.between(i, j);
+  if (reference_.has_direction(i, j) && estimate_.has_direction(i, j)) {
+    const Eigen::Vector3d moved = reference_from_estimate_[i] * p;
+    out.translation_deg = math::degrees(std::atan2(g.cross(moved).norm(), g.dot(moved)));
+  }
+  return out;
+}
+
+/// Keys of frame i with the frames j .. j + block - 1. Loops without branches over a fixed number
+/// of pairs, which every compiler turns into vector code.
+inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j) const {
+  block_keys out;
+  const double w = residual_[0][i], x = residual_[1][i], y = residual_[2][i], z = residual_[3][i];
+  const double *ws = &residual_[0][j], *xs = &residual_[1][j], *ys = &residual_[2][j],
+               *zs = &residual_[3][j];
+  for (std::size_t k = 0; k < block; ++k) {
+    const double cosine = w * ws[k] + x * xs[k] + y * ys[k] + z * zs[k];
+    out.rotation[k] = 1 - cosine * cosine;
+    out.rotation_cell[k] = key_table::cell_of(out.rotation[k]);
+  }
+  const Eigen::Matrix3d& m = reference_from_estimate_[i];
+  const double m00 = m(0, 0), m01 = m(0, 1), m02 = m(0, 2), m10 = m(1, 0), m11 = m(1, 1),
+               m12 = m(1, 2), m20 = m(2, 0), m21 = m(2, 1), m22 = m(2, 2);
+  const double gx = reference_.x[i], gy = reference_.y[i], gz = reference_.z[i];
+  const double px = estimate_.x[i], py = estimate_.y[i], pz = estimate_.z[i];
+  const double *gxs = &reference_.x[j], *gys = &reference_.y[j], *gzs = &reference_.z[j];
+  const double *pxs = &estimate_.x[j], *pys = &estimate_.y[j], *pzs = &estimate_.z[j];
+  const double g_certain = reference_.certain() * reference_.certain();
+  const double p_certain = estimate_.certain() * estimate_.certain();
+  constexpr std::uint64_t back = key_table::size(), ask = 2 * back;
+  for (std::size_t k = 0; k < block; ++k) {
+    const double g0 = gxs[k] - gx, g1 = gys[k] - gy, g2 = gzs[k] - gz;
+    const double p0 = pxs[k] - px, p1 = pys[k] - py, p2 = pzs[k] - pz;
+    const double u0 = m00 * p0 + m01 * p1 + m02 * p2;
+    const double u1 = m10 * p0 + m11 * p1 + m12 * p2;
+    const double u2 = m20 * p0 + m21 * p1 + m22 * p2;
+    const double gg = g0 * g0 + g1 * g1 + g2 * g2;
+    const double pp = p0 * p0 + p1 * p1 + p2 * p2;
+    const double dot = g0 * u0 + g1 * u1 + g2 * u2;
+    out.direction[k] = 1 - dot * dot / (gg * pp);
+    const std::uint64_t cell = key_table::cell_of(out.direction[k]) + (dot < 0 ? back : 0);
+    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : ask;
+  }
+  return out;
+}
+
+inline frame_pairs::cell_tables frame_pairs::tables_of(const joint_counts& bins) {
+  cell_tables out;
+  const key_table rotation = rotation_table(bins.rotation());
+  const key_table front = front_table(bins.translation()), back = back_table(bins.translation());
+  const auto columns = static_cast<std::uint32_t>(bins.columns());
+  for (key_table::cell c : rotation.cells())
+    out.rotation.push_back({c.edge, {c.bin[0] * columns, c.bin[1] * columns}});
+  out.direction = front.cells();
+  out.direction.insert(out.direction.end(), back.cells().begin(), back.cells().end());
+  out.direction.push_back({std::numeric_limits<double>::quiet_NaN(), {0, 0}});
+  return out;
+}
+
+inline void frame_pairs::count_row(std::size_t i,
+                                   pair_row row,
+                                   const cell_tables& tables,
+                                   const joint_counts& bins,
+                                   std::vector<std::uint32_t>& counts) const {
+  const key_table::cell* const rotation = tables.rotation.data();
+  const key_table::cell* const direction = tables.direction.data();
+  std::uint32_t* const count = counts.data();
+  for (std::size_t j = row.begin; j < row.end; j += block) {
+    const block_keys keys = keys_of(i, j);
+    const std::size_t n = std::min(block, row.end - j);
+    for (std::size_t k = 0; k < n; ++k) {
+      const key_table::cell& r = rotation[keys.rotation_cell[k]];
+      const key_table::cell& t = direction[keys.direction_cell[k]];
+      const double past_r = keys.rotation[k] - r.edge, past_t = keys.direction[k] - t.edge;
+      if (!(std::abs(past_r) > key_table::doubt) || !(std::abs(past_t) > key_table::doubt))
+          [[unlikely]] {
+        const pair_error e = error(i, j + k);
+        ++count[bins.place(e.rotation_deg, e.translation_deg)];
+      } else {
+        ++count[r.bin[std::signbit(past_r)] + t.bin[std::signbit(past_t)]];
+      }
+    }
+  }
+}
+
+template <class Row>
+joint_counts frame_pairs::count_rows(angle_bins rotation,
+                                     angle_bins translation,
+                                     Row&& row,
+                                     unsigned threads,
+                                     const control& control) const {
+  joint_counts total(std::move(rotation), std::move(translation));
+  const cell_tables tables = tables_of(total);
+  std::mutex mutex;
+  for_each_chunk(frames_, rows, threads, control, [&](const chunk& c) {
+    std::vector<std::uint32_t> counts(total.places());
+    for (std::size_t i = c.begin; i < c.end; ++i) count_row(i, row(i), tables, total, counts);
+    const std::scoped_lock lock(mutex);  // integers: the order of the sums does not matter
+    total.add(counts);
+  });
+  return total;
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::pose
+
+// aib/pose/auc.hpp
+
+namespace aib::pose {
+
+struct auc_options {
+  unsigned max_deg = 30;  ///< T, [1, 180]
+  auc_convention convention = auc_convention::paper;
+  double position_accuracy = 0;  ///< colmap: shorter reference baselines score by rotation alone
+  unsigned threads = 0;          ///< 0: all
+  struct control control = {};
+};
+
+struct auc_result {
+  auc_convention convention;
+  unsigned max_deg;
+  double auc;               ///< share, [0, 1]
+  double auc_signed;        ///< the same with signed directions: mirrored centres fold to nothing
+  std::vector<double> rra;  ///< share of pairs at 1, 2, .. max_deg degrees
+  std::vector<double> rta;  ///< folded where the convention folds
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;  ///< pairs without a direction, which never score
+  std::size_t n_unregistered;     ///< frames without a finite pose
+};
+
+/// Area under the recall curve of relative pose errors over all frame pairs, 0..max_deg degrees.
+///
+/// estimate    associated with the reference (`colmap` takes the whole reference where both have
+///             names: frames that are missing score there); its world and scale are its own
+///
+/// Pairs without a direction (see baselines) stay in the denominator; the folding conventions
+/// take them for 90 degrees, as their sources do. Invariant to a similarity of either side (`da3`
+/// only where it keeps the first camera first).
+/// Throws argument_error if the trajectories are not associated or max_deg is out of range,
+/// undefined_error if fewer than two frames are registered or no pair has a direction.
+/// Source: the conventions' own code, see auc_convention; the paper's Sec. 3.
+auc_result auc(const trajectory& estimate,
+               const trajectory& reference,
+               const auc_options& options = {});
+
+namespace detail {
+
+/// The frames in the form that makes frame_pairs' E_i E_j^-1 the relative pose of a convention.
+inline registered_frames frames_for(auc_convention convention, registered_frames frames) {
+  for (auto* poses : {&frames.estimate, &frames.reference}) {
+    if (reverses(convention)) {
+      std::reverse(poses->begin(), poses->end());  // E_j E_i^-1
+    } else if (convention == auc_convention::da3) {
+      // E_i^-1 E_j of E_i E_0^-1 is the relative pose of the inverse poses.
+      const math::rigid3 world_from_first = poses->front();
+      for (math::rigid3& pose : *poses) pose = pose.inverse() * world_from_first;
+    }
+  }
+  return frames;
+}
+
+/// What the exact area needs of a set of pair errors e, mergeable in order.
+struct area_sums {
+  double below = 0;  // sum of (T - e) over e <= T
+  double last = 0;   // largest e <= T
+  std::uint64_t n_zero_baseline = 0;
+  std::vector<std::uint64_t> rotation = {};  // errors below k + 1 degrees, from k on
+  std::vector<std::uint64_t> translation = {};
+
+  explicit area_sums(unsigned max_deg = 0) : rotation(max_deg), translation(max_deg) {}
+
+  void add(double rotation_deg, double translation_deg) {
+    const double e = std::max(rotation_deg, translation_deg);
+    const auto limit = static_cast<double>(rotation.size());
+    if (e <= limit) {
+      below += limit - e;
+      last = std::max(last, e);
+    }
+    if (rotation_deg < limit) ++rotation[static_cast<std::size_t>(rotation_deg)];
+    if (translation_deg < limit) ++translation[static_cast<std::size_t>(translation_deg)];
+  }
+
+  friend area_sums operator+(area_sums a, const area_sums& b) {
+    a.below += b.below;
+    a.last = std::max(a.last, b.last);
+    a.n_zero_baseline += b.n_zero_baseline;
+    for (std::size_t k = 0; k < a.rotation.size(); ++k) {
+      a.rotation[k] += b.rotation[k];
+      a.translation[k] += b.translation[k];
+    }
+    return a;
+  }
+};
+
+/// Sums `visit(area_sums&, i, j)` over all pairs i < j of n frames.
+template <class Visit>
+area_sums sum_pairs(std::size_t n, const auc_options& options, Visit&& visit) {
+  return reduce_chunks<area_sums>(
+      n, 64, options.threads, options.control, area_sums(options.max_deg),
+      [&](const chunk& c) {
+        area_sums sums(options.max_deg);
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          for (std::size_t j = i + 1; j < n; ++j) visit(sums, i, j);
+        }
+        return sums;
+      },
+      [](area_sums a, const area_sums& b) { return std::move(a) + b; });
+}
+
+inline std::vector<double> cumulative_shares(const std::vector<std::uint64_t>& counts, double n) {
+  std::vector<double> out;
+  std::uint64_t below = 0;
+  for (const std::uint64_t c : counts) out.push_back(static_cast<double>(below += c) / n);
+  return out;
+}
+
+inline auc_result result_of(const area_sums& sums,
+                            double area,
+                            std::uint64_t n_pairs,
+                            std::size_t n_unregistered,
+                            const auc_options& options) {
+  const auto n = static_cast<double>(n_pairs);
+  const double share = area / (n * options.max_deg);
+  return {.convention = options.convention,
+          .max_deg = options.max_deg,
+          .auc = share,
+          .auc_signed = share,
+          .rra = cumulative_shares(sums.rotation, n),
+          .rta = cumulative_shares(sums.translation, n),
+          .n_pairs = n_pairs,
+          .n_zero_baseline = sums.n_zero_baseline,
+          .n_unregistered = n_unregistered};
+}
+
+inline auc_result exact_auc(const registered_frames& frames,
+                            std::size_t n_unregistered,
+                            const auc_options& options) {
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  const std::size_t n = pairs.frames();
+  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
+    const pair_error e = pairs.error(i, j);
+    s.n_zero_baseline += e.translation_deg ? 0 : 1;
+    s.add(e.rotation_deg, e.translation_deg.value_or(360));
+  });
+  const std::uint64_t n_pairs = n * (n - 1) / 2;
+  if (sums.n_zero_baseline == n_pairs) {
+    throw undefined_error(message("auc: none of ", n_pairs,
+                                  " pairs has a direction; relative_angles still gives RRA"));
+  }
+  return result_of(sums, sums.below, n_pairs, n_unregistered, options);
+}
+
+/// Source: COLMAP benchmark/reconstruction/evaluation/utils.py, compute_rel_errors, compute_auc.
+inline auc_result colmap_auc(const trajectory& estimate,
+                             const trajectory& reference,
+                             const auc_options& options) {
+  const bool named = !estimate.names.empty() && !reference.names.empty();
+  if (!named) check_associated("auc", estimate, reference);
+  std::size_t total = 0;  // reference frames, registered or not
+  for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
+  const association matched =
+      associate(estimate, reference, {.by = named ? match_by::name : match_by::index});
+  registered_frames frames = registered("auc", matched.estimate, matched.reference);
+  if (total < 2) throw undefined_error(message("auc: 2 reference frames expected, found ", total));
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  std::reverse(frames.estimate.begin(), frames.estimate.end());
+  std::reverse(frames.reference.begin(), frames.reference.end());
+  const frame_pairs swapped(frames.estimate, frames.reference);
+  const std::size_t n = pairs.frames();
+  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
+    const pair_error one = pairs.error(i, j), other = swapped.error(n - 1 - j, n - 1 - i);
+    const math::rigid3 &gi = frames.reference[n - 1 - i], &gj = frames.reference[n - 1 - j];
+    const double baseline = (gj.translation - gi.translation).norm();
+    const bool short_reference =
+        baseline < options.position_accuracy || !pairs.reference_baselines().has_direction(i, j);
+    const double without = short_reference ? 0 : 90;
+    const auto translation = [&](const pair_error& e) {
+      return short_reference ? 0 : e.translation_deg.value_or(without);
+    };
+    s.n_zero_baseline += one.translation_deg ? 0 : 2;
+    s.add(one.rotation_deg, translation(one));
+    s.add(other.rotation_deg, translation(other));
+  });
+  return result_of(sums, sums.below + sums.last / 2,
+                   static_cast<std::uint64_t>(total) * (total - 1), total - n, options);
+}
+
+}  // namespace detail
+
+inline auc_result auc(const trajectory& estimate,
+                      const trajectory& reference,
+                      const auc_options& options) {
+  if (options.max_deg < 1 || options.max_deg > 180)
+    throw argument_error(message("auc: max_deg in [1, 180] expected, found ", options.max_deg));
+  if (options.convention == auc_convention::colmap)
+    return detail::colmap_auc(estimate, reference, options);
+  registered_frames frames = registered("auc", estimate, reference);
+  const std::size_t n_unregistered = estimate.size() - frames.index.size();
+  if (frames.index.size() < 2) {
+    throw undefined_error(message("auc: 2 registered frames expected, found ", frames.index.size(),
+                                  " of ", estimate.size()));
+  }
+  if (options.convention == auc_convention::exact)
+    return detail::exact_auc(frames, n_unregistered, options);
+  frames = detail::frames_for(options.convention, std::move(frames));
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
+                                  .count(thresholds.rotation_bins(), thresholds.translation_bins(),
+                                         options.threads, options.control);
+  recall r = thresholds.of(counts);
+  return {.convention = options.convention,
+          .max_deg = options.max_deg,
+          .auc = r.auc,
+          .auc_signed = r.auc_signed,
+          .rra = std::move(r.rra),
+          .rta = std::move(r.rta),
+          .n_pairs = counts.pairs(),
+          .n_zero_baseline = counts.without_direction(),
+          .n_unregistered = n_unregistered};
+}
+
+}  // namespace aib::pose
+
+// aib/pose/auc_breakdown.hpp
+
+namespace aib::pose {
+
+/// The AUC of some of the pairs.
+struct partial_auc {
+  std::optional<recall> value;  ///< nothing where no pair has a direction
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;
+};
+
+struct auc_by_batch_result {
+  partial_auc intra;  ///< pairs of frames of one batch; needs no alignment
+  partial_auc cross;  ///< pairs of frames of two batches; means something after alignment only
+};
+
+struct gap_range {
+  std::size_t first;  ///< smallest difference of two frames' places in the trajectory
+  std::size_t last;   ///< largest, inclusive
+};
+
+struct auc_by_gap_result {
+  gap_range gap;
+  partial_auc part;
+};
+
+namespace detail {
+
+/// The frames of a convention and the place of each in its order.
+struct placed_frames {
+  registered_frames frames;
+  std::vector<std::size_t> place;  // in the associated trajectories, in the order of the frames
+};
+
+inline placed_frames placed(const trajectory& estimate,
+                            const trajectory& reference,
+                            const auc_options& options) {
+  placed_frames out{registered("auc", estimate, reference), {}};
+  out.place = out.frames.index;
+  if (reverses(options.convention)) std::reverse(out.place.begin(), out.place.end());
+  if (!out.place.empty()) out.frames = frames_for(options.convention, std::move(out.frames));
+  return out;
+}
+
+inline partial_auc part_of(const joint_counts& counts, const recall_thresholds& thresholds) {
+  partial_auc out{{}, counts.pairs(), counts.without_direction()};
+  if (out.n_pairs > out.n_zero_baseline) out.value = thresholds.of(counts);
+  return out;
+}
+
+}  // namespace detail
+
+/// AUC over the pairs within batches and over those across batches.
+///
+/// batch   the batch of each frame of the associated trajectories
+///
+/// Per-batch alignment to the reference helps the latter, and the former shows the method alone.
+/// Throws argument_error if the trajectories are not associated, `batch` has another length or the
+/// convention is not one of thresholds (colmap, exact).
+inline auc_by_batch_result auc_by_batch(const trajectory& estimate,
+                                        const trajectory& reference,
+                                        std::span<const std::size_t> batch,
+                                        const auc_options& options = {}) {
+  if (batch.size() != estimate.size()) {
+    throw argument_error(message("auc_by_batch: the batch of each of ", estimate.size(),
+                                 " frames expected, found ", batch.size()));
+  }
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const detail::placed_frames all = detail::placed(estimate, reference, options);
+  const auto batch_of = [&](std::size_t frame) { return batch[all.place[frame]]; };
+  std::vector<std::size_t> order(all.place.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return batch_of(a) < batch_of(b); });
+  std::vector<math::rigid3> e, r;
+  for (const std::size_t i : order) {
+    e.push_back(all.frames.estimate[i]);
+    r.push_back(all.frames.reference[i]);
+  }
+  const auto end_of_batch = [&](std::size_t i) {
+    const auto end = std::upper_bound(
+        order.begin() + static_cast<std::ptrdiff_t>(i), order.end(), batch_of(order[i]),
+        [&](std::size_t b, std::size_t frame) { return b < batch_of(frame); });
+    return static_cast<std::size_t>(end - order.begin());
+  };
+  const joint_counts intra = frame_pairs(e, r).count_rows(
+      thresholds.rotation_bins(), thresholds.translation_bins(),
+      [&](std::size_t i) {
+        return pair_row{i + 1, end_of_batch(i)};
+      },
+      options.threads, options.control);
+  joint_counts cross = frame_pairs(all.frames.estimate, all.frames.reference)
+                           .count(thresholds.rotation_bins(), thresholds.translation_bins(),
+                                  options.threads, options.control);
+  cross -= intra;
+  return {detail::part_of(intra, thresholds), detail::part_of(cross, thresholds)};
+}
+
+/// AUC over the pairs of frames that lie so many places apart: how far errors accumulate.
+///
+/// Throws as auc_by_batch, and argument_error if a range is empty or begins at 0.
+inline std::vector<auc_by_gap_result> auc_by_gap(const trajectory& estimate,
+                                                 const trajectory& reference,
+                                                 std::span<const gap_range> gaps,
+                                                 const auc_options& options = {}) {
+  const recall_thresholds thresholds(options.convention, options.max_deg);
+  const detail::placed_frames all = detail::placed(estimate, reference, options);
+  const frame_pairs pairs(all.frames.estimate, all.frames.reference);
+  std::vector<std::size_t> place = all.place;  // ascending
+  if (reverses(options.convention)) {
+    for (std::size_t& p : place) p = estimate.size() - 1 - p;
+  }
+  std::vector<auc_by_gap_result> out;
+  for (const gap_range& gap : gaps) {
+    if (gap.first < 1 || gap.last < gap.first) {
+      throw argument_error(message("auc_by_gap: a range of gaps from 1 on expected, found ",
+                                   gap.first, "..", gap.last));
+    }
+    const auto row = [&](std::size_t i) {
+      const auto begin = std::lower_bound(place.begin(), place.end(), place[i] + gap.first);
+      const auto end = std::upper_bound(begin, place.end(), place[i] + gap.last);
+      return pair_row{static_cast<std::size_t>(begin - place.begin()),
+                      static_cast<std::size_t>(end - place.begin())};
+    };
+    const joint_counts counts =
+        pairs.count_rows(thresholds.rotation_bins(), thresholds.translation_bins(), row,
+                         options.threads, options.control);
+    out.push_back({gap, detail::part_of(counts, thresholds)});
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/delta_pairs.hpp
+
+namespace aib::pose {
+
+enum class delta_unit { frames, m, deg, rad };
+
+struct delta_options {
+  double delta = 1;
+  delta_unit unit = delta_unit::frames;
+  bool all_pairs = false;  ///< every start, not one pair after another
+  double tolerance = 0.1;  ///< all pairs by path or angle: share of delta that a pair may miss
+};
+
+struct frame_pair {
+  std::size_t from;
+  std::size_t to;
+};
+
+/// Length of the path from the first pose to each.
+[[nodiscard]] inline std::vector<double> path_lengths(std::span<const math::rigid3> poses) {
+  std::vector<double> out;
+  double length = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) length += (poses[i].translation - poses[i - 1].translation).norm();
+    out.push_back(length);
+  }
+  return out;
+}
+
+namespace detail {
+
+[[nodiscard]] inline double turn(const math::rigid3& a, const math::rigid3& b, delta_unit unit) {
+  const double angle = math::rotation_angle(a.rotation.transpose() * b.rotation);
+  return unit == delta_unit::deg ? math::degrees(angle) : angle;
+}
+
+inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_options& options) {
+  const auto delta = static_cast<std::size_t>(options.delta);
+  const std::size_t step = options.all_pairs ? 1 : delta;
+  std::vector<frame_pair> out;
+  for (std::size_t i = 0; i + delta < n; i += step) out.push_back({i, i + delta});
+  return out;
+}
+
+/// Of every place on a path but the last the one whose distance is nearest to delta, the earlier of
+/// two, where it misses it by at most a share of delta.
+inline std::vector<frame_pair> nearest_along_path(std::span<const double> path,
+                                                  double delta,
+                                                  double tolerance) {
+  std::vector<frame_pair> out;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const auto first = path.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto miss = [&](auto at) { return std::abs(*at - path[i] - delta); };
+    auto best = std::lower_bound(first, path.end(), path[i] + delta);
+    if (best == path.end() || (best != first && miss(best - 1) <= miss(best))) --best;
+    best = std::lower_bound(first, best, *best);  // of equal ones the first
+    if (miss(best) <= tolerance * delta)
+      out.push_back({i, static_cast<std::size_t>(best - path.begin())});
+  }
+  return out;
+}
+
+inline std::vector<frame_pair> pairs_by_path(std::span<const math::rigid3> poses,
+                                             const delta_options& options) {
+  if (options.all_pairs)
+    return nearest_along_path(path_lengths(poses), options.delta, options.tolerance);
+  std::vector<frame_pair> out;
+  std::vector<std::size_t> stops;  // as evo: the first pair begins at the first stop, not at 0
+  double since = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) since += (poses[i].translation - poses[i - 1].translation).norm();
+    if (since < options.delta) continue;
+    stops.push_back(i);
+    since = 0;
+  }
+  for (std::size_t k = 1; k < stops.size(); ++k) out.push_back({stops[k - 1], stops[k]});
+  return out;
+}
+
+inline std::vector<frame_pair> pairs_by_angle(std::span<const math::rigid3> poses,
+                                              const delta_options& options) {
+  std::vector<frame_pair> out;
+  if (options.all_pairs) {
+    const double slack = options.tolerance * options.delta;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      for (std::size_t j = i + 1; j < poses.size(); ++j) {
+        const double angle = turn(poses[i], poses[j], options.unit);
+        if (options.delta - slack <= angle && angle <= options.delta + slack) out.push_back({i, j});
+      }
+    }
+    return out;
+  }
+  double since = 0;
+  std::size_t from = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    since += turn(poses[i - 1], poses[i], options.unit);
+    if (since < options.delta) continue;
+    out.push_back({from, i});
+    from = i;
+    since = 0;
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Pairs of poses that are delta frames, metres of path, or degrees or radians of turning apart, in
+/// evo's way: one after another (turning adds up from pose to pose), or all (by angle: the angle
+/// between the two).
+///
+/// Throws argument_error unless delta > 0, and whole for frames; undefined_error if no pair is that
+/// far apart.
+/// Source: evo, core/filters.py.
+inline std::vector<frame_pair> delta_pairs(std::span<const math::rigid3> poses,
+                                           const delta_options& options) {
+  const bool whole = options.delta == std::floor(options.delta);
+  if (!(options.delta > 0) || (options.unit == delta_unit::frames && !whole))
+    throw argument_error(message("delta > 0, whole for frames, expected, found ", options.delta));
+  std::vector<frame_pair> pairs =
+      options.unit == delta_unit::frames ? detail::pairs_by_frames(poses.size(), options)
+      : options.unit == delta_unit::m    ? detail::pairs_by_path(poses, options)
+                                         : detail::pairs_by_angle(poses, options);
+  if (pairs.empty()) {
+    throw undefined_error(
+        message("no two of ", poses.size(), " poses are a delta of ", options.delta, " apart"));
+  }
+  return pairs;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/focal.hpp
+
+namespace aib::pose {
+
+/// The camera that a view was estimated with and the one that took it.
+struct camera_pair {
+  math::camera estimate;
+  math::camera reference;
+};
+
+/// What a mean is taken over.
+enum class focal_over {
+  views,    ///< each registered image counts
+  cameras,  ///< each different pair of cameras counts once
+};
+
+struct focal_error_result {
+  double mre;                ///< mean relative error, a share
+  std::size_t n;             ///< views or cameras averaged
+  std::vector<double> each;  ///< relative error of each
+};
+
+[[nodiscard]] inline bool same_camera(const math::camera& a, const math::camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         a.parameters == b.parameters;
+}
+
+/// Focal length of a camera as it would be for an image of another size: fx goes with the width, fy
+/// with the height; their mean. Pixels. Throws argument_error where a model has no focal length.
+inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uint64_t height) {
+  const auto ratio = [](std::uint64_t to, std::uint64_t from) {
+    return to == 0 || from == 0 ? 1 : static_cast<double>(to) / static_cast<double>(from);
+  };
+  return (c.fx() * ratio(width, c.width) + c.fy() * ratio(height, c.height)) / 2;
+}
+
+/// Mean of |f - f_ref| / f_ref over views. The estimate's focal lengths are rescaled to the
+/// reference's image size (sizes of 0 are unknown: taken for equal), fx and fy averaged.
+///
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length.
+inline focal_error_result focal_error(std::span<const camera_pair> views,
+                                      focal_over over = focal_over::views) {
+  focal_error_result out{0, 0, {}};
+  std::vector<const camera_pair*> counted;
+  for (const camera_pair& view : views) {
+    const auto is_view = [&](const camera_pair* c) {
+      return same_camera(c->estimate, view.estimate) && same_camera(c->reference, view.reference);
+    };
+    if (over == focal_over::cameras) {
+      if (std::any_of(counted.begin(), counted.end(), is_view)) continue;
+      counted.push_back(&view);
+    }
+    const math::camera& ref = view.reference;
+    const double f_ref = (ref.fx() + ref.fy()) / 2;
+    const double f = focal_at_size(view.estimate, ref.width, ref.height);
+    out.each.push_back(std::abs(f - f_ref) / f_ref);
+    out.mre += out.each.back();
+  }
+  out.n = out.each.size();
+  if (out.n == 0) throw undefined_error("focal_error: no view");
+  out.mre /= static_cast<double>(out.n);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/intrinsics.hpp
+
+namespace aib::pose {
+
+/// Differences of two cameras, in pixels of the reference's image.
+struct reprojection_difference_result {
+  double mean;  ///< over the image plane
+  double max;
+  std::uint64_t n;       ///< pixels of the grid that both cameras see
+  std::uint64_t n_lost;  ///< pixels whose ray one of them does not have
+};
+
+/// How far apart two cameras show the same direction: rays through a grid of the reference's image,
+/// projected by the estimate, whose pixels are rescaled to the reference's size. Compares any two
+/// models.
+///
+/// cells   of the grid along the longer side; their centres are taken
+///
+/// Throws argument_error if a size is unknown, undefined_error if no ray is seen by both.
+inline reprojection_difference_result reprojection_difference(const math::camera& estimate,
+                                                              const math::camera& reference,
+                                                              std::size_t cells = 32) {
+  if (estimate.width * estimate.height * reference.width * reference.height * cells == 0)
+    throw argument_error("reprojection_difference: image sizes and a grid expected");
+  const auto width = static_cast<double>(reference.width);
+  const auto height = static_cast<double>(reference.height);
+  const Eigen::Array2d rescale(width / static_cast<double>(estimate.width),
+                               height / static_cast<double>(estimate.height));
+  const double cell = std::max(width, height) / static_cast<double>(cells);
+  const auto columns = static_cast<std::size_t>(std::max(1.0, std::round(width / cell)));
+  const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(height / cell)));
+  stats::moments differences;
+  std::uint64_t lost = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Eigen::Vector2d pixel(
+          (static_cast<double>(column) + 0.5) * width / static_cast<double>(columns),
+          (static_cast<double>(row) + 0.5) * height / static_cast<double>(rows));
+      const auto ray = unproject(reference, pixel);
+      const auto seen = ray ? project(estimate, *ray) : std::nullopt;
+      if (seen)
+        differences.add((seen->array() * rescale - pixel.array()).matrix().norm());
+      else
+        ++lost;
+    }
+  }
+  if (differences.count() == 0) {
+    throw undefined_error(
+        message("reprojection_difference: none of ", lost, " rays is seen by both cameras"));
+  }
+  return {differences.mean(), differences.max(), differences.count(), lost};
+}
+
+struct intrinsics_error_result {
+  focal_error_result focal;
+  double principal_point_px;  ///< mean distance of the principal points, at the reference's size
+  double focal_spread;        ///< standard deviation of the estimated focal length over its mean
+  double reprojection_px;     ///< mean reprojection_difference
+  double reprojection_max_px;
+};
+
+/// Intrinsics of views against those of the reference, all at the reference's image size.
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length or
+/// an image no size.
+inline intrinsics_error_result intrinsics_error(std::span<const camera_pair> views) {
+  intrinsics_error_result out{focal_error(views), 0, 0, 0, 0};
+  stats::moments point, focal, reprojection;
+  reprojection_difference_result d{};
+  const camera_pair* before = nullptr;
+  for (const camera_pair& view : views) {
+    const math::camera &e = view.estimate, &r = view.reference;
+    if (!before || !same_camera(before->estimate, e) || !same_camera(before->reference, r))
+      d = reprojection_difference(e, r);
+    before = &view;
+    const double sx = static_cast<double>(r.width) / static_cast<double>(e.width);
+    const double sy = static_cast<double>(r.height) / static_cast<double>(e.height);
+    point.add(std::hypot(e.cx() * sx - r.cx(), e.cy() * sy - r.cy()));
+    focal.add(focal_at_size(e, r.width, r.height));
+    reprojection.add(d.mean);
+    out.reprojection_max_px = std::max(out.reprojection_max_px, d.max);
+  }
+  out.principal_point_px = point.mean();
+  out.focal_spread = focal.deviation() / focal.mean();
+  out.reprojection_px = reprojection.mean();
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/kitti_odometry.hpp
+
+namespace aib::pose {
+
+struct kitti_odometry_options {
+  std::vector<double> lengths_m = {100, 200, 300, 400, 500, 600, 700, 800};
+  std::size_t step = 10;  ///< frames from one start to the next
+};
+
+/// Mean errors of segments.
+struct segment_errors {
+  double translation_percent;  ///< of the segment's length
+  double rotation_deg_per_m;
+  std::uint64_t n;  ///< segments
+};
+
+struct kitti_odometry_result {
+  segment_errors all;                     ///< over all segments, each counts once
+  std::vector<double> lengths_m;          ///< those that have a segment
+  std::vector<segment_errors> by_length;  ///< one of each
+};
+
+/// KITTI odometry's errors: over segments of the reference's path, from every `step`-th frame, the
+/// motion (est_i^-1 est_j)^-1 (ref_i^-1 ref_j), divided by the segment's length.
+///
+/// Invariant to a rigid motion of either side. Frames without a finite pose are passed over. Throws
+/// argument_error if the trajectories are not associated, undefined_error if the path is shorter
+/// than every length.
+/// Source: Geiger, Lenz, Urtasun, CVPR 2012; devkit, evaluate_odometry.cpp.
+inline kitti_odometry_result kitti_odometry(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            const kitti_odometry_options& options = {}) {
+  if (options.step == 0) throw argument_error("kitti_odometry: step > 0 expected");
+  const registered_frames frames = registered("kitti_odometry", estimate, reference);
+  const std::vector<double> path = path_lengths(frames.reference);
+  kitti_odometry_result out{};
+  for (const double length : options.lengths_m) {
+    if (!(length > 0))
+      throw argument_error(message("kitti_odometry: lengths > 0 expected, found ", length));
+    segment_errors sum{};
+    for (std::size_t i = 0; i < path.size(); i += options.step) {
+      std::size_t j = i;
+      while (j < path.size() && !(path[j] > path[i] + length)) ++j;
+      if (j == path.size()) break;
+      const auto motion = [&](const std::vector<math::rigid3>& poses) {
+        return poses[i].inverse() * poses[j];
+      };
+      const math::rigid3 error = motion(frames.estimate).inverse() * motion(frames.reference);
+      sum.translation_percent += 100 * error.translation.norm() / length;
+      sum.rotation_deg_per_m += math::degrees(math::rotation_angle(error.rotation)) / length;
+      ++sum.n;
+    }
+    if (sum.n == 0) continue;
+    const auto n = static_cast<double>(sum.n);
+    out.all.translation_percent += sum.translation_percent;
+    out.all.rotation_deg_per_m += sum.rotation_deg_per_m;
+    out.all.n += sum.n;
+    out.lengths_m.push_back(length);
+    out.by_length.push_back({sum.translation_percent / n, sum.rotation_deg_per_m / n, sum.n});
+  }
+  if (out.all.n == 0) {
+    throw undefined_error(message("kitti_odometry: no segment; the reference's path is ",
+                                  path.empty() ? 0 : path.back(), " m long"));
+  }
+  out.all.translation_percent /= static_cast<double>(out.all.n);
+  out.all.rotation_deg_per_m /= static_cast<double>(out.all.n);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/registration.hpp
+
+namespace aib::pose {
+
+struct registration {
+  double rate;                       ///< n_registered / n_total
+  std::size_t n_registered;          ///< reference frames with a finite pose in the estimate
+  std::size_t n_total;               ///< frames of the reference
+  std::vector<std::string> missing;  ///< names of the others, in the reference's order
+};
+
+/// Share of the reference's frames that have a pose in an estimate, or in any of several
+/// sub-models. Frames of the estimate that the reference does not name do not count.
+///
+/// rules   how names are compared, see associate_options
+///
+/// Throws argument_error if poses have no names, undefined_error if the reference is empty.
+inline registration registration_rate(std::span<const trajectory> estimates,
+                                      const trajectory& reference,
+                                      const associate_options& rules = {}) {
+  if (reference.empty()) throw undefined_error("registration_rate: the reference has no frame");
+  std::unordered_set<std::string> posed;
+  for (const trajectory& estimate : estimates) {
+    if (estimate.names.size() != estimate.size() || reference.names.empty())
+      throw argument_error("registration_rate: poses with names expected");
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      if (estimate.world_from_camera[i].is_finite())
+        posed.insert(detail::name_key(estimate.names[i], rules));
+    }
+  }
+  registration out{0, 0, reference.size(), {}};
+  for (const std::string& name : reference.names) {
+    if (posed.contains(detail::name_key(name, rules)))
+      ++out.n_registered;
+    else
+      out.missing.push_back(name);
+  }
+  out.rate = static_cast<double>(out.n_registered) / static_cast<double>(out.n_total);
+  return out;
+}
+
+inline registration registration_rate(const trajectory& estimate,
+                                      const trajectory& reference,
+                                      const associate_options& rules = {}) {
+  return registration_rate(std::span(&estimate, 1), reference, rules);
+}
+
+/// Index of the sub-model that is scored: most frames, then most points, then the lowest index.
+/// Never by score. Throws undefined_error if there is none.
+///
+/// n_points   one a model, or empty
+inline std::size_t largest_model(std::span<const trajectory> models,
+                                 std::span<const std::size_t> n_points = {}) {
+  if (models.empty()) throw undefined_error("largest_model: no model");
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    const bool more_points = !n_points.empty() && n_points[i] > n_points[best];
+    if (models[i].size() > models[best].size() ||
+        (models[i].size() == models[best].size() && more_points))
+      best = i;
+  }
+  return best;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/relative_angles.hpp
+
+namespace aib::pose {
+
+struct relative_angles_options {
+  std::vector<double> tau_deg = {5, 15, 30};  ///< thresholds, (0, 180]
+  unsigned threads = 0;                       ///< 0: all
+  struct control control = {};
+};
+
+/// Shares are of all pairs; a pair without a direction never scores in `rta`.
+struct relative_angles_result {
+  std::vector<double> tau_deg;  ///< as asked for
+  std::vector<double> rra;      ///< relative rotation accuracy: share of pairs below each tau
+  std::vector<double> rta;      ///< relative translation accuracy, signed directions
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;  ///< pairs without a direction
+  std::size_t n_unregistered;     ///< frames left out because a pose is not finite
+};
+
+/// Shares of frame pairs whose relative rotation, and whose relative translation direction, is off
+/// by strictly less than each tau.
+///
+/// estimate    associated with the reference; its world and scale are its own
+///
+/// Invariant to a similarity of either side. Throws argument_error if the trajectories are not
+/// associated or a tau is out of range, undefined_error if fewer than two frames are registered.
+/// Source: Jin et al., "Image matching across wide baselines", IJCV 2021, Sec. 3.3.
+inline relative_angles_result relative_angles(const trajectory& estimate,
+                                              const trajectory& reference,
+                                              const relative_angles_options& options = {}) {
+  for (const double tau : options.tau_deg) {
+    if (!(tau > 0 && tau <= 180))
+      throw argument_error(message("relative_angles: tau in (0, 180] expected, found ", tau));
+  }
+  const registered_frames frames = registered("relative_angles", estimate, reference);
+  if (frames.index.size() < 2) {
+    throw undefined_error(message("relative_angles: 2 registered frames expected, found ",
+                                  frames.index.size(), " of ", estimate.size()));
+  }
+  const angle_bins bins(options.tau_deg);
+  const joint_counts counts = frame_pairs(frames.estimate, frames.reference)
+                                  .count(bins, bins, options.threads, options.control);
+  relative_angles_result out{.tau_deg = options.tau_deg,
+                             .rra = {},
+                             .rta = {},
+                             .n_pairs = counts.pairs(),
+                             .n_zero_baseline = counts.without_direction(),
+                             .n_unregistered = estimate.size() - frames.index.size()};
+  const auto n = static_cast<double>(out.n_pairs);
+  for (const double tau : options.tau_deg) {
+    const std::size_t below = bins.bins_below(tau);
+    out.rra.push_back(static_cast<double>(counts.sum(below, 0, counts.columns())) / n);
+    out.rta.push_back(static_cast<double>(counts.sum(bins.size(), 0, below)) / n);
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/rpe.hpp
+
+namespace aib::pose {
+
+/// Whose path or turning tells which poses are a delta apart.
+enum class pairs_from { estimate, reference };
+
+struct rpe_options {
+  pose_relation relation = pose_relation::translation;
+  delta_options pairs = {};
+  pairs_from from = pairs_from::estimate;  ///< evo's default
+};
+
+/// Relative pose error: of each pair of poses a delta apart the motion
+/// E = (ref_i^-1 ref_j)^-1 (est_i^-1 est_j). Frames without a finite pose are passed over before
+/// deltas are counted.
+///
+/// Invariant to a rigid motion of either side. Pairs with a reference distance of 0 have no
+/// point_distance_ratio and are left out. Throws argument_error if the trajectories are not
+/// associated or delta is not positive, undefined_error if no pair is a delta apart.
+/// Source: Sturm et al., IROS 2012, Sec. IV-A; evo, core/metrics.py, RPE.
+inline pose_errors rpe(const trajectory& estimate,
+                       const trajectory& reference,
+                       const rpe_options& options = {}) {
+  const registered_frames frames = registered("rpe", estimate, reference);
+  const auto& path = options.from == pairs_from::estimate ? frames.estimate : frames.reference;
+  const bool ratio = options.relation == pose_relation::point_distance_ratio;
+  pose_errors out;
+  for (const frame_pair& pair : delta_pairs(path, options.pairs)) {
+    const auto motion = [&](const std::vector<math::rigid3>& poses) {
+      return poses[pair.from].inverse() * poses[pair.to];
+    };
+    const math::rigid3 est = motion(frames.estimate), ref = motion(frames.reference);
+    double error = magnitude(options.relation, ref.inverse() * est);
+    if (ratio || options.relation == pose_relation::point_distance)
+      error = std::abs(ref.translation.norm() - est.translation.norm());
+    if (ratio) {
+      if (ref.translation.norm() == 0) continue;
+      error *= 100 / ref.translation.norm();
+    }
+    out.errors.push_back(error);
+    out.index.push_back(frames.index[pair.to]);
+  }
+  if (out.errors.empty()) throw undefined_error("rpe: no reference pose moves over a delta");
+  out.summary = stats::summarize(out.errors);
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/sub_trajectory.hpp
+
+namespace aib::pose {
+
+struct sub_trajectory_options {
+  std::vector<double> lengths = {};  ///< empty: 10, 20, .. 50 % of the reference's path
+  double tolerance = 0.2;            ///< share of the length that a sub-trajectory may miss
+};
+
+/// Errors over the sub-trajectories of one length.
+struct sub_trajectory_errors {
+  double length;
+  stats::summary translation;          ///< unit of the positions
+  stats::summary translation_percent;  ///< of the length
+  stats::summary rotation_deg;
+  stats::summary rotation_deg_per_m;
+  stats::summary yaw_deg;      ///< about the world's z axis
+  stats::summary gravity_deg;  ///< of roll and pitch: what gravity would tell
+};
+
+/// Relative errors by the length of sub-trajectories, as rpg_trajectory_evaluation has them: every
+/// frame starts one that ends where the reference's path is nearest to the length; the error
+/// (ref_i^-1 ref_j)^-1 (est_i^-1 est_j) is turned into the estimate's world. Lengths with fewer
+/// than two sub-trajectories are left out.
+///
+/// Invariant to a translation and a turn about z of either side. Frames without a finite pose are
+/// passed over. Throws argument_error if the trajectories are not associated, undefined_error if no
+/// length has two.
+/// Source: Zhang and Scaramuzza, IROS 2018, Sec. IV; rpg_trajectory_evaluation,
+/// compute_trajectory_errors.py.
+inline std::vector<sub_trajectory_errors> sub_trajectories(
+    const trajectory& estimate,
+    const trajectory& reference,
+    const sub_trajectory_options& options = {}) {
+  const registered_frames frames = registered("sub_trajectories", estimate, reference);
+  const std::vector<double> path = path_lengths(frames.reference);
+  std::vector<double> lengths = options.lengths;
+  if (lengths.empty() && !path.empty()) {
+    for (int k = 1; k <= 5; ++k) lengths.push_back(path.back() * k / 10);
+  }
+  std::vector<sub_trajectory_errors> out;
+  for (const double length : lengths) {
+    std::vector<double> translation, percent, rotation, per_m, yaw, gravity;
+    for (const frame_pair& pair : detail::nearest_along_path(path, length, options.tolerance)) {
+      const auto motion = [&](const std::vector<math::rigid3>& poses) {
+        return poses[pair.from].inverse() * poses[pair.to];
+      };
+      const math::rigid3 error = motion(frames.reference).inverse() * motion(frames.estimate);
+      const Eigen::Matrix3d& w = frames.estimate[pair.to].rotation;
+      const Eigen::Matrix3d r = w * error.rotation * w.transpose();
+      translation.push_back(error.translation.norm());
+      percent.push_back(100 * translation.back() / length);
+      rotation.push_back(math::degrees(math::rotation_angle(r)));
+      per_m.push_back(rotation.back() / length);
+      yaw.push_back(math::degrees(std::abs(std::atan2(r(1, 0), r(0, 0)))));
+      const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+      gravity.push_back(math::degrees(std::hypot(pitch, std::atan2(r(2, 1), r(2, 2)))));
+    }
+    if (translation.size() < 2) continue;
+    out.push_back({length, stats::summarize(translation), stats::summarize(percent),
+                   stats::summarize(rotation), stats::summarize(per_m), stats::summarize(yaw),
+                   stats::summarize(gravity)});
+  }
+  if (out.empty()) {
+    throw undefined_error(message("sub_trajectories: no length has two; the reference's path is ",
+                                  path.empty() ? 0 : path.back(), " long"));
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/pose/worst_pairs.hpp
+
+namespace aib::pose {
+
+struct worst_pairs_options {
+  std::size_t n = 10;    ///< how many
+  unsigned threads = 0;  ///< 0: all
+  struct control control = {};
+};
+
+struct worst_pair {
+  std::string first, second;  ///< names, or numbers where there are none
+  double rotation_deg;
+  std::optional<double> translation_deg;  ///< signed direction; nothing where there is none
+};
+
+/// The pairs of frames with the largest error, rotation or direction, in descending order.
+/// Throws argument_error if the trajectories are not associated.
+inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
+                                           const trajectory& reference,
+                                           const worst_pairs_options& options = {}) {
+  const registered_frames frames = registered("worst_pairs", estimate, reference);
+  const frame_pairs pairs(frames.estimate, frames.reference);
+  struct found {
+    double error;
+    std::size_t i, j;
+    pair_error angles;
+    bool operator<(const found& o) const {
+      if (error != o.error) return error > o.error;
+      return i != o.i ? i < o.i : j < o.j;
+    }
+  };
+  const auto keep_worst = [&](std::vector<found>& list) {
+    const std::size_t n = std::min(options.n, list.size());
+    std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(n), list.end());
+    list.resize(n);
+  };
+  const auto worst = reduce_chunks<std::vector<found>>(
+      pairs.frames(), 64, options.threads, options.control, std::vector<found>(),
+      [&](const chunk& c) {
+        std::vector<found> list;
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          for (std::size_t j = i + 1; j < pairs.frames(); ++j) {
+            const pair_error e = pairs.error(i, j);
+            list.push_back({std::max(e.rotation_deg, e.translation_deg.value_or(0)), i, j, e});
+            if (list.size() >= 2 * options.n + 1000) keep_worst(list);
+          }
+          keep_worst(list);
+        }
+        return list;
+      },
+      [&](std::vector<found> a, std::vector<found> b) {
+        a.insert(a.end(), b.begin(), b.end());
+        keep_worst(a);
+        return a;
+      });
+  std::vector<worst_pair> out;
+  for (const found& f : worst) {
+    out.push_back({frame_name(estimate, reference, frames.index[f.i]),
+                   frame_name(estimate, reference, frames.index[f.j]), f.angles.rotation_deg,
+                   f.angles.translation_deg});
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
+// aib/sample/mesh.hpp
+
+namespace aib::sample {
+
+/// How many points; exactly one of the three is given.
+struct mesh_options {
+  std::optional<std::size_t> n = {};    ///< this many
+  std::optional<double> spacing = {};   ///< one a square of this side, in the unit of the mesh
+  std::optional<double> per_area = {};  ///< this many a square unit
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: all
+};
+
+/// Points on a surface and how densely they lie.
+struct mesh_samples {
+  cloud::cloud points;  ///< with face normals, and labels where the mesh has them
+  double area;          ///< of the mesh, square units
+  double density;       ///< points a square unit
+  /// Mean distance from a point of the surface to the nearest of randomly placed samples,
+  /// 0.5 / sqrt(density): below it an accuracy against these samples says nothing.
+  double floor;
+};
+
+/// Mean distance from a point of a surface to the nearest of randomly placed samples.
+[[nodiscard]] inline double sampling_floor(double density) { return 0.5 / std::sqrt(density); }
+
+/// Points on a mesh, uniform by area. A triangle of area a gets n a / area points, rounded up or
+/// down by one random offset for all; within it they are independent.
+///
+/// Points lie in the order of their triangles and have the triangle's normal and label.
+/// The same for any number of threads.
+/// Throws argument_error unless exactly one of n, spacing, per_area is given and positive,
+/// undefined_error if the mesh has no area.
+mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options);
+
+namespace detail {
+
+inline std::size_t sample_count(const mesh_options& options, double area) {
+  if (options.n.has_value() + options.spacing.has_value() + options.per_area.has_value() != 1) {
+    throw argument_error("sample::mesh: exactly one of n, spacing and per_area expected");
+  }
+  const double n = options.n         ? static_cast<double>(*options.n)
+                   : options.spacing ? area / (*options.spacing * *options.spacing)
+                                     : area * *options.per_area;
+  const bool positive = !options.spacing || *options.spacing > 0;
+  if (!(n > 0) || !positive) {
+    throw argument_error("sample::mesh: n, spacing or per_area must be positive");
+  }
+  if (n > std::numeric_limits<std::uint32_t>::max()) {
+    throw argument_error(message("sample::mesh: at most 4 294 967 295 points expected, found ", n));
+  }
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(n)));
+}
+
+/// Index of the first sample of each triangle, and at the end their number.
+inline std::vector<std::size_t> sample_starts(const aib::mesh::mesh& surface,
+                                              double area,
+                                              std::size_t n,
+                                              double offset) {
+  std::vector<std::size_t> starts;
+  starts.reserve(surface.triangles.size() + 1);
+  double below = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const double place = below / area * static_cast<double>(n) + offset;
+    starts.push_back(std::min(n, static_cast<std::size_t>(place)));
+    below += aib::mesh::area(surface, t);
+  }
+  starts.push_back(n);
+  return starts;
+}
+
+/// Uniform in [0, 1) for a counter.
+inline double uniform(std::uint64_t seed, std::uint64_t counter) {
+  return static_cast<double>(random_bits(seed, counter) >> 11) * 0x1p-53;
+}
+
+/// A point of a triangle for two uniform numbers.
+/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
+inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner, double u, double v) {
+  const double root = std::sqrt(u);
+  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
+}
+
+inline Eigen::Vector3f unit_normal(const std::array<Eigen::Vector3d, 3>& corner) {
+  const Eigen::Vector3d ab = corner[1] - corner[0];
+  const Eigen::Vector3d ac = corner[2] - corner[0];
+  const Eigen::Vector3d normal = ab.cross(ac).normalized();
+  return normal.cast<float>();
+}
+
+/// An empty cloud that n points will lie in.
+inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
+  cloud::cloud points;
+  points.origin = surface.origin;
+  points.points.resize(n);
+  points.normals.resize(n);
+  if (!surface.labels.empty()) points.labels.resize(n);
+  return points;
+}
+
+}  // namespace detail
+
+inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options) {
+  const double area = aib::mesh::area(surface);
+  if (!(area > 0)) {
+    throw undefined_error(
+        message("sample::mesh: the mesh has no area (", surface.triangles.size(), " triangles)"));
+  }
+  const std::size_t n = detail::sample_count(options, area);
+  const double offset = detail::uniform(options.seed, 0);
+  const auto starts = detail::sample_starts(surface, area, n, offset);
+  cloud::cloud points = detail::room_for(surface, n);
+  for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
+    for (std::size_t t = c.begin; t < c.end; ++t) {
+      if (starts[t] == starts[t + 1]) continue;
+      const auto corner = aib::mesh::corners(surface, t);
+      const Eigen::Vector3f normal = detail::unit_normal(corner);
+      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+        const Eigen::Vector3d p = detail::point_in(corner, detail::uniform(options.seed, 2 * i + 1),
+                                                   detail::uniform(options.seed, 2 * i + 2));
+        points.points[i] = p.cast<float>();
+        points.normals[i] = normal;
+        if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+      }
+    }
+  });
+  const double density = static_cast<double>(n) / area;
+  return {std::move(points), area, density, sampling_floor(density)};
+}
+
+}  // namespace aib::sample
+
+// aib/sample/unproject.hpp
+
+namespace aib::sample {
+
+/// What the numbers of a confidence map are, and thus what `min_confidence` is compared with.
+enum class confidence_rule {
+  raw,         ///< the number itself is above it (DA3, VGGT: never below 1)
+  sigmoid,     ///< 1 / (1 + exp(-number)) is above it (pi3 stores logits)
+  percentile,  ///< a share: that part of the valid pixels, the least confident, is left out
+};
+
+/// What a depth is.
+enum class depth_meaning {
+  planar,  ///< distance along the optical axis
+  range,   ///< distance from the camera centre
+};
+
+struct unproject_options {
+  raster::view<const float> confidence = {};  ///< none, or of the size of the map
+  std::optional<double> min_confidence = {};  ///< a pixel is kept strictly above it
+  confidence_rule rule = confidence_rule::raw;
+  std::size_t stride = 1;     ///< every stride-th column and row
+  double pixel_offset = 0.5;  ///< of a pixel's centre from its index: 0.5 as COLMAP, or 0
+  depth_meaning meaning = depth_meaning::planar;
+  raster::view<const raster::rgb> colors = {};  ///< none, or of the size of the map
+  unsigned threads = 0;                         ///< 0: all
+};
+
+/// Points of a depth map, and what became of its pixels.
+struct unprojected {
+  cloud::cloud points;   ///< row by row
+  std::size_t n_valid;   ///< pixels of the grid with a depth
+  std::size_t n_unsure;  ///< of those, left out for their confidence
+  std::size_t n_unseen;  ///< left out because the camera sees nothing there
+};
+
+/// The points that a depth map shows, in world frame.
+///
+/// depth              in the unit of the pose
+/// camera             any model; where its size differs from the map's, pixels are scaled to it
+/// world_from_camera  a depth map and a pose of a method's own scale give points of that scale:
+///                    align the points afterwards
+///
+/// The order of the points does not depend on the number of threads. Throws argument_error if the
+/// sizes differ, stride is 0, the pose is not finite or only one of confidence and min_confidence
+/// is given.
+[[nodiscard]] unprojected unproject(const depth::depth_map& map,
+                                    const math::camera& camera,
+                                    const math::rigid3& world_from_camera,
+                                    const unproject_options& options = {});
+
+namespace detail {
+
+inline void check(const depth::depth_map& map,
+                  const math::rigid3& pose,
+                  const unproject_options& options) {
+  const auto require = [&](bool holds, const auto&... what) {
+    if (!holds) throw argument_error(message("sample::unproject: ", what...));
+  };
+  const auto same_size = [&](std::string_view thing, const auto& view) {
+    require(!view.data || (view.width == map.values.width() && view.height == map.values.height()),
+            "the depth map is ", map.values.width(), "x", map.values.height(), ", the ", thing, " ",
+            view.width, "x", view.height);
+  };
+  same_size("confidence map", options.confidence);
+  same_size("picture", options.colors);
+  require(options.stride > 0, "stride >= 1 expected, found 0");
+  require(pose.is_finite(), "the pose is not finite");
+  require(options.min_confidence.has_value() == (options.confidence.data != nullptr),
+          "a confidence map and min_confidence go together, found one of them");
+}
+
+/// The confidence as stored that a pixel must exceed. Of a percentile: the quantile of the
+/// confidences of valid pixels.
+inline double confidence_threshold(const depth::depth_map& map, const unproject_options& options) {
+  const double least = *options.min_confidence;
+  if (options.rule == confidence_rule::raw) return least;
+  if (!(least >= 0 && least <= 1)) {
+    throw argument_error(
+        message("sample::unproject: min_confidence in [0, 1] expected, found ", least));
+  }
+  if (options.rule == confidence_rule::sigmoid) return std::log(least / (1 - least));
+  std::vector<float> of_valid;
+  for (std::size_t y = 0; y < map.values.height(); y += options.stride) {
+    for (std::size_t x = 0; x < map.values.width(); x += options.stride) {
+      if (depth::is_valid(map.values(x, y))) of_valid.push_back(options.confidence(x, y));
+    }
+  }
+  if (of_valid.empty() || least == 0) return -HUGE_VAL;
+  return stats::quantile_in_place<float>(of_valid, least, stats::quantile_rule::lower);
+}
+
+/// Unprojects rows of one map.
+class unprojector {
+ public:
+  unprojector(const depth::depth_map& map,
+              const math::camera& camera,
+              const math::rigid3& world_from_camera,
+              const unproject_options& options)
+      : map_(map.values), camera_(camera), pose_(world_from_camera), options_(options) {
+    if (options.confidence.data) threshold_ = confidence_threshold(map, options);
+    if (camera.width > 0 && camera.height > 0) {
+      scale_x_ = static_cast<double>(camera.width) / static_cast<double>(map_.width);
+      scale_y_ = static_cast<double>(camera.height) / static_cast<double>(map_.height);
+    }
+  }
+
+  /// Adds the points of a row to `to`, which are counted from `to.points.origin`.
+  void add_row(std::size_t y, unprojected& to) const {
+    for (std::size_t x = 0; x < map_.width; x += options_.stride) {
+      const float depth = map_(x, y);
+      if (!depth::is_valid(depth)) continue;
+      ++to.n_valid;
+      if (threshold_ && !(options_.confidence(x, y) > *threshold_)) {
+        ++to.n_unsure;
+      } else if (const auto p_in_camera = point(x, y, depth)) {
+        const Eigen::Vector3d p = pose_ * *p_in_camera - to.points.origin;
+        to.points.points.push_back(p.cast<float>());
+        if (options_.colors.data) to.points.colors.push_back(options_.colors(x, y));
+      } else {
+        ++to.n_unseen;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::optional<Eigen::Vector3d> point(std::size_t x,
+                                                     std::size_t y,
+                                                     double depth) const {
+    const Eigen::Vector2d pixel((static_cast<double>(x) + options_.pixel_offset) * scale_x_,
+                                (static_cast<double>(y) + options_.pixel_offset) * scale_y_);
+    const auto direction = math::unproject(camera_, pixel);
+    if (!direction) return std::nullopt;
+    if (options_.meaning == depth_meaning::range) return *direction * depth;
+    if (!(direction->z() > 0)) return std::nullopt;
+    return *direction * (depth / direction->z());
+  }
+
+  raster::view<const float> map_;
+  const math::camera& camera_;
+  const math::rigid3& pose_;
+  const unproject_options& options_;
+  std::optional<double> threshold_ = {};
+  double scale_x_ = 1;
+  double scale_y_ = 1;
+};
+
+inline unprojected append(unprojected a, const unprojected& b) {
+  const auto extend = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  extend(a.points.points, b.points.points);
+  extend(a.points.colors, b.points.colors);
+  a.n_valid += b.n_valid;
+  a.n_unsure += b.n_unsure;
+  a.n_unseen += b.n_unseen;
+  return a;
+}
+
+}  // namespace detail
+
+inline unprojected unproject(const depth::depth_map& map,
+                             const math::camera& camera,
+                             const math::rigid3& world_from_camera,
+                             const unproject_options& options) {
+  detail::check(map, world_from_camera, options);
+  const Eigen::Vector3d& centre = world_from_camera.translation;
+  unprojected nothing{};
+  nothing.points.origin = cloud::natural_origin(centre, centre);
+  if (map.values.empty()) return nothing;
+  const detail::unprojector rows(map, camera, world_from_camera, options);
+  const std::size_t n_rows = (map.values.height() + options.stride - 1) / options.stride;
+  const auto points_of = [&](const chunk& c) {
+    unprojected part = nothing;
+    for (std::size_t i = c.begin; i < c.end; ++i) rows.add_row(i * options.stride, part);
+    return part;
+  };
+  return reduce_chunks(n_rows, 32, options.threads, {}, nothing, points_of, detail::append);
+}
+
+}  // namespace aib::sample
+
+// aib/sample/voxel.hpp
+
+namespace aib::sample {
+
+/// Where the lattice of voxels begins.
+enum class voxel_anchor {
+  world,   ///< at the origin of the world: one more point moves no other
+  open3d,  ///< half a voxel below the cloud's own corner, as Open3D's voxel_down_sample
+};
+
+/// The one point that stands for a voxel.
+enum class voxel_pick {
+  mean,     ///< mean of its points
+  centre,   ///< centre of the voxel
+  nearest,  ///< that of its points which is nearest to their mean
+};
+
+struct voxel_options {
+  double size = 0;  ///< edge of a voxel, in the unit of the cloud
+  voxel_anchor anchor = voxel_anchor::world;
+  voxel_pick pick = voxel_pick::mean;
+  unsigned threads = 0;  ///< 0: all
+};
+
+/// One point for each voxel that has any, in the order of the lattice. Normal, colour and label are
+/// those of the voxel's point nearest to the chosen one. Points that are not finite are left out.
+///
+/// The cell of a point is calculated in double. The same for any number of threads.
+/// Throws argument_error if size is not positive or far too small for the cloud.
+[[nodiscard]] cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options);
+
+namespace detail {
+
+/// The lattice: which cell a point lies in, counted from the lowest cell of the cloud.
+class voxel_lattice {
+ public:
+  voxel_lattice(const cloud::cloud& points, const voxel_options& options)
+      : points_(points), size_(options.size) {
+    if (!(options.size > 0 && std::isfinite(options.size))) {
+      throw argument_error(message("sample::voxel: size > 0 expected, found ", options.size));
+    }
+    const cloud::box box = cloud::bounds(points);
+    anchor_.setZero();
+    if (options.anchor == voxel_anchor::open3d) anchor_ = box.low.array() - size_ * 0.5;
+    if (box.empty()) return;
+    const Eigen::Vector3d low = cell_of(box.low), high = cell_of(box.high);
+    first_ = low;
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(low[k]) < 0x1p52 && std::abs(high[k]) < 0x1p52 && high[k] - low[k] < 0x1p31)) {
+        throw argument_error(
+            message("sample::voxel: size ", size_, " is too small for a cloud of ", box.size()[k]));
+      }
+      const auto cells = static_cast<std::uint64_t>(high[k] - low[k]) + 1;
+      bits_[static_cast<std::size_t>(k)] = static_cast<int>(std::bit_width(cells));
+    }
+  }
+
+  /// Bits that the cells take on an axis.
+  [[nodiscard]] int bits(std::size_t axis) const { return bits_[axis]; }
+
+  [[nodiscard]] std::array<std::uint64_t, 3> cell(std::size_t i) const {
+    const Eigen::Vector3d c = cell_of(points_.position(i)) - first_;
+    return {static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
+            static_cast<std::uint64_t>(c.z())};
+  }
+
+  /// Centre of the cell of point i.
+  [[nodiscard]] Eigen::Vector3d centre(std::size_t i) const {
+    const Eigen::Vector3d c = cell_of(points_.position(i));
+    return anchor_.array() + (c.array() + 0.5) * size_;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d cell_of(const Eigen::Vector3d& p) const {
+    return ((p - anchor_) / size_).array().floor();
+  }
+
+  const cloud::cloud& points_;
+  double size_;
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  std::array<int, 3> bits_{};
+};
+
+/// Finite points sorted by their cell (z, then y, then x), then index: one radix sort an axis, the
+/// least important axis first, each stable.
+inline search::buffer<std::uint64_t> sort_by_cell(const cloud::cloud& points,
+                                                  const voxel_lattice& lattice,
+                                                  unsigned threads) {
+  const int index_bits = std::max(1, static_cast<int>(std::bit_width(points.size())));
+  const std::uint64_t mask = (std::uint64_t{1} << index_bits) - 1;
+  std::vector<std::uint64_t> finite;
+  finite.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (cloud::is_finite(points.points[i])) finite.push_back(i);
+  }
+  search::buffer<std::uint64_t> words(finite.size());
+  std::copy(finite.begin(), finite.end(), words.data());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for_each_chunk(words.size(), 1 << 16, threads, {}, [&](const chunk& c) {
+      for (std::size_t w = c.begin; w < c.end; ++w) {
+        const std::uint64_t i = words[w] & mask;
+        words[w] = lattice.cell(i)[axis] << index_bits | i;
+      }
+    });
+    search::radix_sort(words, {index_bits, index_bits + lattice.bits(axis)}, threads);
+  }
+  for (std::size_t w = 0; w < words.size(); ++w) words[w] &= mask;
+  return words;
+}
+
+/// Where each voxel's points begin in the sorted list, and at the end its length.
+inline std::vector<std::size_t> voxel_starts(const search::buffer<std::uint64_t>& sorted,
+                                             const voxel_lattice& lattice) {
+  std::vector<std::size_t> starts;
+  std::array<std::uint64_t, 3> last{};
+  for (std::size_t w = 0; w < sorted.size(); ++w) {
+    const auto cell = lattice.cell(sorted[w]);
+    if (w == 0 || cell != last) starts.push_back(w);
+    last = cell;
+  }
+  starts.push_back(sorted.size());
+  return starts;
+}
+
+/// Index of the point nearest to a position, the first among equals.
+inline std::size_t nearest_of(const cloud::cloud& points,
+                              std::span<const std::uint64_t> index,
+                              const Eigen::Vector3d& to) {
+  return *std::min_element(index.begin(), index.end(), [&](std::uint64_t a, std::uint64_t b) {
+    return (points.position(a) - to).squaredNorm() < (points.position(b) - to).squaredNorm();
+  });
+}
+
+/// Mean position of some points.
+inline Eigen::Vector3d mean_of(const cloud::cloud& points, std::span<const std::uint64_t> index) {
+  Eigen::Vector3d sum(0, 0, 0);
+  for (const std::uint64_t i : index) sum += points.points[i].cast<double>();
+  return points.origin + sum / static_cast<double>(index.size());
+}
+
+}  // namespace detail
+
+inline cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options) {
+  const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
+  const detail::voxel_lattice lattice(points, options);
+  const auto sorted = detail::sort_by_cell(points, lattice, threads);
+  const auto starts = detail::voxel_starts(sorted, lattice);
+  const std::size_t n = starts.size() - 1;
+  std::vector<std::size_t> source(n);
+  std::vector<Eigen::Vector3d> position(n);
+  for_each_chunk(n, 4096, threads, {}, [&](const chunk& c) {
+    for (std::size_t v = c.begin; v < c.end; ++v) {
+      const auto members = sorted.span().subspan(starts[v], starts[v + 1] - starts[v]);
+      const bool centre = options.pick == voxel_pick::centre;
+      position[v] = centre ? lattice.centre(members.front()) : detail::mean_of(points, members);
+      source[v] = detail::nearest_of(points, members, position[v]);
+    }
+  });
+  cloud::cloud picked = cloud::select(points, source);
+  if (options.pick == voxel_pick::nearest) return picked;
+  cloud::placed_points placed =
+      cloud::place(n, [&](std::size_t v) -> const Eigen::Vector3d& { return position[v]; });
+  picked.origin = placed.origin;
+  picked.points = std::move(placed.points);
+  return picked;
+}
+
+}  // namespace aib::sample
+
+// aib/stats/bootstrap.hpp
+
+namespace aib::stats {
+
+struct bootstrap_options {
+  std::size_t block = 10;  ///< neighbours drawn together; 1: independent values
+  std::size_t resamples = 2000;
+  double level = 0.95;  ///< share of the resampled means inside the interval
+  std::uint64_t seed = 1;
+};
+
+/// A mean and how far it may be off.
+struct interval {
+  double mean;
+  double low;
+  double high;
+  double deviation;  ///< of the resampled means: the standard error
+};
+
+/// Percentile interval of the mean of a series whose neighbours are alike, as frames of a flight
+/// that overlap by 80 % are: blocks of consecutive values are drawn with replacement, the series
+/// taken as a ring. With independent draws (block = 1) the interval of such a series is too narrow.
+/// A difference of two conditions: pass the differences frame by frame.
+///
+/// A block longer than the series is the series, and the interval a point. Throws undefined_error
+/// if there is no value, argument_error if block or resamples is 0 or level outside (0, 1).
+/// Source: Politis, Romano, "A circular block-resampling procedure for stationary data", 1992.
+[[nodiscard]] inline interval bootstrap_mean(std::span<const double> values,
+                                             const bootstrap_options& options = {}) {
+  if (values.empty()) throw undefined_error("stats::bootstrap_mean: no values");
+  if (options.block == 0 || options.resamples == 0 || !(options.level > 0 && options.level < 1)) {
+    throw argument_error(
+        message("stats::bootstrap_mean: block and resamples > 0 and level in "
+                "(0, 1) expected, found ",
+                options.block, ", ", options.resamples, " and ", options.level));
+  }
+  const std::size_t n = values.size();
+  random_engine random(options.seed);
+  std::vector<double> means(options.resamples);
+  for (double& mean : means) {
+    moments sample;
+    while (sample.count() < n) {
+      const std::size_t first = random.below(n);
+      const std::size_t length = std::min(options.block, n - sample.count());
+      for (std::size_t i = 0; i < length; ++i) sample.add(values[(first + i) % n]);
+    }
+    mean = sample.mean();
+  }
+  moments of_values, of_means;
+  for (const double v : values) of_values.add(v);
+  for (const double m : means) of_means.add(m);
+  const double tail = (1 - options.level) / 2;
+  return {.mean = of_values.mean(),
+          .low = quantile<double>(means, tail),
+          .high = quantile<double>(means, 1 - tail),
+          .deviation = of_means.deviation()};
+}
+
+}  // namespace aib::stats
+
+// aib/stats/histogram.hpp
+
+namespace aib::stats {
+
+/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
+/// dropped.
+class histogram {
+ public:
+  /// Throws argument_error unless low < high and bins > 0.
+  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
+    if (!(low < high) || bins == 0) {
+      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
+                                   low, ", ", high, ", ", bins));
+    }
+  }
+
+  /// A NaN counts as above.
+  void add(double value) {
+    if (value < low_) {
+      ++below_;
+    } else if (value < high_) {
+      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
+      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
+    } else {
+      ++above_;
+    }
+  }
+
+  /// Throws argument_error if the bins differ.
+  histogram& operator+=(const histogram& other) {
+    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
+      throw argument_error("stats::histogram: the bins of merged histograms differ");
+    }
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+    below_ += other.below_;
+    above_ += other.above_;
+    return *this;
+  }
+
+  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
+  [[nodiscard]] std::uint64_t below() const { return below_; }
+  [[nodiscard]] std::uint64_t above() const { return above_; }
+  [[nodiscard]] std::uint64_t total() const {
+    std::uint64_t n = below_ + above_;
+    for (const std::uint64_t c : counts_) n += c;
+    return n;
+  }
+  /// Lower edge of bin i; edge(bins) is the upper end.
+  [[nodiscard]] double edge(std::size_t i) const {
+    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
+  }
+
+ private:
+  double low_, high_;
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t below_ = 0;
+  std::uint64_t above_ = 0;
+};
+
+}  // namespace aib::stats

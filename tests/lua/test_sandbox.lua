@@ -21,7 +21,7 @@ local function scene(script)
   local top = os.tmpname()
   os.remove(top)
   assert(os.execute(("mkdir -p %s/script %s/data %s/out"):format(top, top, top)))
-  assert(os.execute(("ln -s ../secret.txt %s/data/link && ln -s / %s/data/root"):format(top, top)))
+  assert(os.execute(("ln -s ../secret.txt %s/data/link && ln -s / %s/data/all"):format(top, top)))
   aib.system.write_text(top .. "/secret.txt", "secret")
   aib.system.write_text(top .. "/data/fine.txt", "fine")
   aib.system.write_text(top .. "/script/attack.lua", ("local top <const> = %q\n"):format(top) .. script)
@@ -85,7 +85,7 @@ return aib.test {
       if pcall(aib.system.read_text, top .. path) then print("ESCAPED", path) end
       if pcall(io.lines, top .. path) then print("ESCAPED", path) end
     end
-    if io.open("/etc/passwd") or io.open(top .. "/data/root/etc/passwd") then print("ESCAPED passwd") end
+    if io.open("/etc/passwd") or io.open(top .. "/data/all/etc/passwd") then print("ESCAPED passwd") end
     if pcall(aib.system.names_in, "/") then print("ESCAPED names") end
     if loadfile(top .. "/secret.txt") or pcall(dofile, top .. "/secret.txt") then print("ESCAPED load") end
   ]],
