@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
-"""Compiles the headers on a machine without one of the optional libraries, and without all of them.
+"""Compiles the headers on a machine without one of the optional libraries, and without all of them;
+poses and depth with Eigen alone.
 
 usage: guards.py SOURCE_ROOT
 
@@ -45,7 +46,8 @@ def compiles(root, header, absent):
 
 def main(root):
     tries = [("aib/io.hpp", [library]) for library in LIBRARIES]
-    tries += [("aib/aib.hpp", list(LIBRARIES)), ("aib/pose.hpp", list(LIBRARIES))]
+    tries += [("aib/aib.hpp", list(LIBRARIES))]
+    tries += [(header, [*LIBRARIES, "nanoflann.hpp"]) for header in ("aib/pose.hpp", "aib/depth.hpp")]
     n_failed = 0
     for header, absent in tries:
         is_right = compiles(root, header, absent)
