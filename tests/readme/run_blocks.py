@@ -47,18 +47,19 @@ def main():
 
     blocks = BLOCK.findall(options.page.read_text())
     folder = options.page.resolve().parent
+    shell = str(pathlib.Path(options.shell).resolve())
     eigen = subprocess.run(["pkg-config", "--cflags", "eigen3"], capture_output=True, text=True, check=True)
     compiler = [*options.compile, *eigen.stdout.split()]
     passed = failed = 0
     for (language, code), (after, expected) in zip(blocks, [*blocks[1:], ("", "")]):
         if language == "lua":
-            printed = run([options.shell, "-e", code], folder)
+            printed = run([shell, "-e", code], folder)
         elif language == "cpp":
             printed = run_cpp(code, folder, compiler)
         elif language == "console":
             command, _, expected = code.partition("\n")
             after = "text"
-            printed = run([options.shell, *shlex.split(command.removeprefix("$ aib-lua "))], folder)
+            printed = run([shell, *shlex.split(command.removeprefix("$ aib-lua "))], folder)
         else:
             continue
         if after == "text" and printed == expected:
