@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Compiles one header alone, all warnings as errors, and writes what the compiler says to a report.
 
-usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRECOMPILED]
-       compile_header.py COMPILER BUILD_FOLDER HEADER PRECOMPILED
+usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE
 
-The second form writes the precompiled header that the first may begin with. An empty report is a
+An empty report is a
 header that compiles. Flags are those the tests are built with. A header whose library is not here
 is skipped.
 """
@@ -28,15 +27,8 @@ def flags_of_tests(build_folder):
     return [*flags, "-fdiagnostics-color=never"]
 
 
-def precompile(compiler, build_folder, header, precompiled):
-    command = [compiler, *flags_of_tests(build_folder), "-x", "c++-header", header, "-o", precompiled]
-    subprocess.run(command, cwd=build_folder, check=True)
-
-
-def main(compiler, build_folder, header, report, depfile, precompiled=None):
+def main(compiler, build_folder, header, report, depfile):
     command = [compiler, *flags_of_tests(build_folder), "-fsyntax-only", "-MD", "-MF", depfile]
-    if precompiled:
-        command += ["-include-pch", precompiled]
     command += ["-MT", report, "-x", "c++", "-include", header, "/dev/null"]
     run = subprocess.run(command, cwd=build_folder, capture_output=True, text=True)
     absent = ABSENT.search(run.stderr)
@@ -48,4 +40,4 @@ def main(compiler, build_folder, header, report, depfile, precompiled=None):
 
 
 if __name__ == "__main__":
-    (precompile if len(sys.argv) == 5 else main)(*sys.argv[1:])
+    main(*sys.argv[1:])
