@@ -44,6 +44,7 @@ clang                program clang++
 clang-format         program clang-format
 lua-check            program luacheck
 cmake                program cmake
+colmap               program colmap
 '
 
 is_here() {  # is_here KIND NAME [VERSION]

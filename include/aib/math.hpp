@@ -7,6 +7,7 @@
 
 #include <aib/math/camera.hpp>
 #include <aib/math/log_ratio.hpp>
+#include <aib/math/nearest_rotation.hpp>
 #include <aib/math/projection.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/rotation.hpp>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/math/nearest_rotation.hpp>
 #include <aib/math/projection.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/sim3.hpp>

@@ -422,16 +422,6 @@ Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation);
 /// Geodesic angle of a rotation in radians, [0, pi]; accurate near 0 and near pi.
 double rotation_angle(const Eigen::Matrix3d& rotation);
 
-/// A rotation and how far the matrix that it was made from lay from it.
-struct projected_rotation {
-  Eigen::Matrix3d rotation;
-  double residual;  ///< Frobenius norm of (matrix - rotation)
-};
-
-/// The rotation nearest to `matrix` in the Frobenius norm; nothing where the matrix is not finite
-/// or where its determinant is not positive.
-std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix);
-
 inline Eigen::Matrix3d rotation_from(const quaternion& q) {
   const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   if (!(norm > 0) || !std::isfinite(norm)) {
@@ -465,13 +455,6 @@ inline Eigen::Vector3d axis_angle_from(const Eigen::Matrix3d& rotation) {
 inline double rotation_angle(const Eigen::Matrix3d& rotation) {
   const quaternion q = quaternion_from(rotation);
   return 2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), q.w);
-}
-
-inline std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix) {
-  if (!matrix.allFinite() || !(matrix.determinant() > 0)) return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  return projected_rotation{rotation, (matrix - rotation).norm()};
 }
 
 }  // namespace aib::math
@@ -9300,6 +9283,27 @@ inline void write_cloud(const std::filesystem::path& path,
 }
 
 }  // namespace aib::io
+
+// aib/math/nearest_rotation.hpp
+
+namespace aib::math {
+
+/// A rotation and how far the matrix that it was made from lay from it.
+struct projected_rotation {
+  Eigen::Matrix3d rotation;
+  double residual;  ///< Frobenius norm of (matrix - rotation)
+};
+
+/// The rotation nearest to `matrix` in the Frobenius norm; nothing where the matrix is not finite
+/// or where its determinant is not positive.
+inline std::optional<projected_rotation> nearest_rotation(const Eigen::Matrix3d& matrix) {
+  if (!matrix.allFinite() || !(matrix.determinant() > 0)) return std::nullopt;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  return projected_rotation{rotation, (matrix - rotation).norm()};
+}
+
+}  // namespace aib::math
 
 // aib/io/pose_frame.hpp
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/core/random.hpp>
+#include <aib/math/nearest_rotation.hpp>
 #include <aib/math/rotation.hpp>
 
 #include <doctest/doctest.h>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/error.hpp>
+#include <aib/math/nearest_rotation.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/rotation.hpp>
 
