@@ -153,6 +153,15 @@ TEST_CASE("robust mode finds the transform of the majority, the same one each ti
   }
 }
 
+TEST_CASE("robust mode keeps every pose that is exact to rounding") {
+  const pose::trajectory reference = synthetic::orbit({.frames = 8});
+  pose::trajectory estimate = in_own_world(reference);
+  estimate.world_from_camera[7].translation.z() += 100;
+  const auto a = align::trajectory(estimate, reference, {.robust = align::ransac_options{}});
+  CHECK(a.n_inliers == 7);
+  CHECK(a.outliers == std::vector<std::size_t>{7});
+}
+
 TEST_CASE("poses that are not finite are passed over, and nothing is undefined") {
   const pose::trajectory reference = synthetic::orbit();
   pose::trajectory estimate = in_own_world(reference);

@@ -7,6 +7,8 @@
 #include <aib/core/random.hpp>
 #include <aib/stats/quantiles.hpp>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,10 +26,25 @@ struct ransac_options {
   std::uint64_t seed = 1;
 };
 
+namespace detail {
+
+/// Diagonal of the box of the points.
+inline double extent(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d low = points.front(), high = points.front();
+  for (const Eigen::Vector3d& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return (high - low).norm();
+}
+
+}  // namespace detail
+
 /// The poses among `chosen` that agree with one transform, ascending.
 ///
 /// With `distance` the transform of three poses that most poses agree with (RANSAC); without, the
-/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations.
+/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations,
+/// or within a billionth of the extent where nothing but rounding is left.
 /// Then fit and inliers in turns until they no longer change.
 /// Throws undefined_error if no three poses tell a transform.
 /// Source: Fischler and Bolles, CACM 1981; Rousseeuw, "Least median of squares regression", 1984.
@@ -67,7 +84,8 @@ inline std::vector<std::size_t> consensus(const pose_fit& fit,
     throw undefined_error("align: robust: no three poses tell a transform");
   const double n = static_cast<double>(chosen.size());
   const double sigma = 1.4826 * (1 + 5 / std::max(1.0, n - 3)) * least;  // Rousseeuw, Eq. (1.3)
-  const double limit = options.distance > 0 ? options.distance : 2.5 * sigma;
+  const double rounding = 1e-9 * detail::extent(fit.reference(chosen));
+  const double limit = options.distance > 0 ? options.distance : std::max(2.5 * sigma, rounding);
   std::vector<std::size_t> inliers;
   for (int round = 0; round < 20; ++round) {
     std::vector<std::size_t> next;
