@@ -6,6 +6,7 @@
 #include <aib/cloud/compare.hpp>
 #include <aib/cloud/crop.hpp>
 #include <aib/cloud/distances.hpp>
+#include <aib/cloud/join.hpp>
 #include <aib/cloud/normals.hpp>
 #include <aib/cloud/outliers.hpp>
 #include <aib/cloud/positions.hpp>
@@ -192,7 +193,19 @@ void bind_distances_type(lua_State* state) {
       .method("share_beyond", {}, [](const distances& d) { return d.share_beyond(); });
 }
 
+/// The clouds of a list.
+cloud::cloud joined(const sol::table& list) {
+  std::vector<const cloud::cloud*> clouds;
+  for (std::size_t i = 1; i <= list.size(); ++i) {
+    const auto* c = get_if<cloud::cloud>(list.get<sol::object>(i));
+    if (!c) throw argument_error(message("aib.cloud.joined: element ", i, ": cloud expected"));
+    clouds.push_back(c);
+  }
+  return cloud::joined(clouds);
+}
+
 void bind_preparation(module& m) {
+  m.function("joined", {"clouds"}, [](const sol::table& list) { return joined(list); });
   m.function("crop", {"cloud", "volume"},
              [](const cloud::cloud& c, const sol::table& volume) { return crop(c, volume); })
       .function("without_statistical_outliers", {"cloud", "options"},

@@ -3,12 +3,15 @@
 #include <aib/cloud/distances.hpp>
 #include <aib/io/cloud.hpp>
 #include <aib/io/depth.hpp>
+#include <aib/io/frame_stack.hpp>
 #include <aib/io/image.hpp>
 #include <aib/io/mesh.hpp>
 #include <aib/math/camera.hpp>
 #include <aib/raster/color.hpp>
+#include <aib/stats/quantiles.hpp>
 
 #include "kit.hpp"
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -161,6 +164,41 @@ void bind_readers(module& m) {
 #endif
 }
 
+std::string print_stack(const io::frame_stack& s) {
+  return message("frame_stack(", s.size(), " frames of ", s.width(), "x", s.height(),
+                 s.is_point_map() ? " points)" : ")");
+}
+
+/// A quantile of all finite numbers of all frames.
+double quantile_of(io::frame_stack& stack, double q) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < stack.size(); ++i) {
+    for (const float v : stack.frame(i)) {
+      if (std::isfinite(v)) values.push_back(v);
+    }
+  }
+  return stats::quantile_in_place<float>(values, q);
+}
+
+void bind_stacks(lua_State* state, module& m) {
+  type<io::frame_stack>(state, "frame_stack", print_stack)
+      .length([](const io::frame_stack& s) { return s.size(); })
+      .element([](io::frame_stack& s, std::size_t i) { return depth::depth_map{s.frame(i)}; })
+      .field("width", [](const io::frame_stack& s) { return s.width(); })
+      .field("height", [](const io::frame_stack& s) { return s.height(); })
+      .method("array", {"index"},
+              [](io::frame_stack& s, std::size_t index) {
+                if (index == 0) throw argument_error("frame_stack:array: frames count from 1");
+                return s.at(index - 1);
+              })
+      .method("quantile", {"q"}, [](io::frame_stack& s, double q) { return quantile_of(s, q); });
+  m.function("open_stack", {"path", "options"}, [](const path& file, options& o) {
+    const std::string key = o.text("key", "");
+    o.done();
+    return io::frame_stack(file, key);
+  });
+}
+
 void bind_writers(module& m) {
   m.function("write_cloud", {"path", "cloud", "options"},
              [](const path& file, const cloud::cloud& cloud, options& o) {
@@ -198,6 +236,7 @@ void bind_writers(module& m) {
 void bind_io_data(lua_State* state) {
   module m(state, "io");
   bind_readers(m);
+  bind_stacks(state, m);
   bind_images(m);
   bind_writers(m);
 }

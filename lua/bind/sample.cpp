@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/io/npy.hpp>
 #include <aib/sample/mesh.hpp>
+#include <aib/sample/point_map.hpp>
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>
 
@@ -47,6 +49,23 @@ sample::voxel_options voxel_options(options& o, const session& s) {
   return v;
 }
 
+record info_of(lua_State* state, const sample::unprojected& made) {
+  record info(state);
+  info.set("n_valid", made.n_valid).set("n_unsure", made.n_unsure);
+  return info.set("n_unseen", made.n_unseen);
+}
+
+sample::unprojected place_point_map(const io::array& points,
+                                    const math::rigid3& pose,
+                                    const sample::unproject_options& how) {
+  if (points.shape.size() != 3 || points.shape[2] != 3) {
+    throw argument_error(message("aib.sample.point_map: an array of H x W x 3 expected, found ",
+                                 io::text_of_shape(points.shape)));
+  }
+  return sample::place_point_map(points.values<float>(), points.shape[1], points.shape[0], pose,
+                                 how);
+}
+
 }  // namespace
 
 void bind_sample(lua_State* state) {
@@ -78,9 +97,16 @@ void bind_sample(lua_State* state) {
                   const auto how = unproject_options(o, s);
                   o.done();
                   auto made = sample::unproject(map, camera, pose, how);
-                  record info(l);
-                  info.set("n_valid", made.n_valid).set("n_unsure", made.n_unsure);
-                  info.set("n_unseen", made.n_unseen);
+                  const record info = info_of(l, made);
+                  return results(std::move(made.points), info);
+                })
+      .function("point_map", {"points", "pose", "options"},
+                [](lua_State* l, session& s, const io::array& points, const math::rigid3& pose,
+                   options& o) {
+                  const auto how = unproject_options(o, s);
+                  o.done();
+                  auto made = place_point_map(points, pose, how);
+                  const record info = info_of(l, made);
                   return results(std::move(made.points), info);
                 });
 }

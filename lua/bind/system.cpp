@@ -73,6 +73,21 @@ void bind_files(module& system) {
                   const io::fingerprint f = io::fingerprint_of(path);
                   return record(state).set("bytes", f.bytes).set("sha256", f.sha256);
                 })
+      .function("make_folder", {"path"},
+                [](const fs::path& path) {
+                  std::error_code error;
+                  fs::create_directories(path, error);
+                  if (error) throw io_error(path, message("cannot make it: ", error.message()));
+                })
+      // Tells a file that was not touched without reading it: size and time of the last change.
+      .function("status", {"path"},
+                [](const fs::path& path) {
+                  std::error_code error;
+                  const auto bytes = fs::file_size(path, error);
+                  const auto time = fs::last_write_time(path, error);
+                  if (error) throw io_error(path, message("cannot look: ", error.message()));
+                  return message(bytes, " ", time.time_since_epoch().count());
+                })
       .function("sha256", {"text"},
                 [](const std::string& text) { return io::sha256().add(text).digest(); });
 }

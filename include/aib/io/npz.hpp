@@ -35,6 +35,13 @@ struct array_info {
   std::vector<std::size_t> shape = {};
 };
 
+/// Where the bytes of a member lie in the file, as they are or deflated.
+struct npz_place {
+  std::uint64_t begin;
+  std::uint64_t packed;
+  bool is_deflated;
+};
+
 /// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
 /// come from the central directory, contents are checked against their CRC-32. Members are read
 /// when asked for.
@@ -59,6 +66,12 @@ class npz_file {
   /// Shape and type from the array's header alone.
   /// Throws as read does.
   [[nodiscard]] array_info read_header(std::string_view name) const;
+
+  /// The same with where the elements begin.
+  [[nodiscard]] detail::npy_header npy_header_of(std::string_view name) const;
+
+  /// For readers of a part of a member. Throws as read does.
+  [[nodiscard]] npz_place place_of(std::string_view name) const;
 
   /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
   [[nodiscard]] bool is_unreadable(std::string_view name) const;
@@ -192,13 +205,25 @@ inline array npz_file::read(std::string_view name) const {
 }
 
 inline array_info npz_file::read_header(std::string_view name) const {
+  detail::npy_header header = npy_header_of(name);
+  return {header.type, std::move(header.shape)};
+}
+
+inline npz_place npz_file::place_of(std::string_view name) const {
+  const member& m = get(name);
+  static_cast<void>(content(m, std::min<std::uint64_t>(m.size, 1)));  // checks all but the end
+  const std::uint64_t begin = data_offset(m);
+  if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
+  return {begin, m.packed, m.method != 0};
+}
+
+inline detail::npy_header npz_file::npy_header_of(std::string_view name) const {
   const member& m = get(name);
   const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
   const auto preamble =
       detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
   const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
-  return {header.type, std::move(header.shape)};
+  return detail::read_npy_header(content(m, n), m.size, inside);
 }
 
 inline bool npz_file::is_unreadable(std::string_view name) const {

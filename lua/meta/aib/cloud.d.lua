@@ -86,6 +86,11 @@ function distances:share_beyond() end
 ---@return aib.Cloud cloud
 function cloud.from_points(points) end
 
+---The points of several clouds, in their order.
+---@param clouds aib.Cloud[]
+---@return aib.Cloud all
+function cloud.joined(clouds) end
+
 ---The points that lie in a volume.
 ---@param points aib.Cloud
 ---@param volume aib.Box|aib.OrientedBox|aib.PolygonVolume

@@ -163,6 +163,29 @@ function io.read_depth(path, options) end
 ---@return aib.DepthMap[]
 function io.read_stack(path, options) end
 
+---The frames of one array of an NPY or NPZ file, read one at a time: `#s` frames, `s[i]` is a depth
+---map (of a point map its z). Frames of a compressed file are cheap in their order.
+---@class aib.FrameStack
+---@field width integer
+---@field height integer
+local frame_stack = {}
+
+---A frame as it is stored: H x W, or H x W x 3 of a point map.
+---@param index integer
+---@return aib.Array
+function frame_stack:array(index) end
+
+---A quantile of all finite numbers of all frames.
+---@param q number  # 0..1
+---@return number
+function frame_stack:quantile(q) end
+
+---Opens the frames of an array of N x H x W numbers; memory holds one of them.
+---@param path string
+---@param options? { key?: string }  # NPZ: the array; else depth, depths, local_points or the only one
+---@return aib.FrameStack
+function io.open_stack(path, options) end
+
 ---Writes depth as .exr (float, ZIP), .pfm, .npy or .png (16 bits).
 ---@param path string
 ---@param depth aib.DepthMap

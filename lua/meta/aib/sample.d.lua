@@ -52,4 +52,12 @@ function sample.voxel(points, options) end
 ---@return table info  # n_valid, n_unsure, n_unseen
 function sample.unproject(depth, camera, pose, options) end
 
+---The points of a point map (pi3, DUSt3R) in the world; confidence, min_confidence, rule and stride as of a depth map.
+---@param points aib.Array  # H x W x 3, in the frame of the camera
+---@param pose aib.Pose  # world from camera
+---@param options? aib.UnprojectOptions
+---@return aib.Cloud points
+---@return table info  # n_valid, n_unsure, n_unseen
+function sample.point_map(points, pose, options) end
+
 return sample

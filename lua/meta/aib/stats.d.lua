@@ -49,4 +49,11 @@ function stats.summary(values) end
 ---@return number quantile
 function stats.quantile(values, q, options) end
 
+---The mean of a series and a bootstrap interval of it: blocks of neighbours are drawn together. For a difference of two
+---conditions pass the differences frame by frame.
+---@param values number[]
+---@param options? { block?: integer, resamples?: integer, level?: number, seed?: integer }  # 10, 2000, 0.95, 1
+---@return { mean: number, low: number, high: number, deviation: number } interval
+function stats.bootstrap(values, options) end
+
 return stats

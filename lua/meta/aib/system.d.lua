@@ -35,6 +35,15 @@ function system.write_text(path, text) end
 ---@return table
 function system.fingerprint(path) end
 
+---Makes a folder and those above it; none is made anew.
+---@param path string
+function system.make_folder(path) end
+
+---Tells a file that was not touched without reading it: size and time of the last change, as a text.
+---@param path string
+---@return string
+function system.status(path) end
+
 ---SHA-256 of a text, 64 hexadecimal digits.
 ---@param text string
 ---@return string
