@@ -27,6 +27,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <exception>
 #include <fcntl.h>
 #include <filesystem>
@@ -858,10 +859,25 @@ struct ransac_options {
   std::uint64_t seed = 1;
 };
 
+namespace detail {
+
+/// Diagonal of the box of the points.
+inline double extent(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d low = points.front(), high = points.front();
+  for (const Eigen::Vector3d& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return (high - low).norm();
+}
+
+}  // namespace detail
+
 /// The poses among `chosen` that agree with one transform, ascending.
 ///
 /// With `distance` the transform of three poses that most poses agree with (RANSAC); without, the
-/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations.
+/// one with the least median residual, whose inliers lie within 2.5 robust standard deviations,
+/// or within a billionth of the extent where nothing but rounding is left.
 /// Then fit and inliers in turns until they no longer change.
 /// Throws undefined_error if no three poses tell a transform.
 /// Source: Fischler and Bolles, CACM 1981; Rousseeuw, "Least median of squares regression", 1984.
@@ -901,7 +917,8 @@ inline std::vector<std::size_t> consensus(const pose_fit& fit,
     throw undefined_error("align: robust: no three poses tell a transform");
   const double n = static_cast<double>(chosen.size());
   const double sigma = 1.4826 * (1 + 5 / std::max(1.0, n - 3)) * least;  // Rousseeuw, Eq. (1.3)
-  const double limit = options.distance > 0 ? options.distance : 2.5 * sigma;
+  const double rounding = 1e-9 * detail::extent(fit.reference(chosen));
+  const double limit = options.distance > 0 ? options.distance : std::max(2.5 * sigma, rounding);
   std::vector<std::size_t> inliers;
   for (int round = 0; round < 20; ++round) {
     std::vector<std::size_t> next;
@@ -3055,7 +3072,6 @@ inline void super_packet::search_all_alone(std::uint32_t near_block) {
 // aib/search/nearest.hpp
 
 namespace aib::search {
-inline namespace AIB_ISA {
 
 struct nearest_options {
   /// Squared distances are searched below this bound only; a query without such a neighbour gets
@@ -3064,6 +3080,8 @@ struct nearest_options {
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
+
+inline namespace AIB_ISA {
 
 /// Squared distance from each point of `queries` to its nearest neighbour in `targets`, in the
 /// order in which the points of `queries` were given.
@@ -3125,6 +3143,67 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
 }  // namespace AIB_ISA
 }  // namespace aib::search
 
+// aib/stats/histogram.hpp
+
+namespace aib::stats {
+
+/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
+/// dropped.
+class histogram {
+ public:
+  /// Throws argument_error unless low < high and bins > 0.
+  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
+    if (!(low < high) || bins == 0) {
+      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
+                                   low, ", ", high, ", ", bins));
+    }
+  }
+
+  /// A NaN counts as above.
+  void add(double value) {
+    if (value < low_) {
+      ++below_;
+    } else if (value < high_) {
+      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
+      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
+    } else {
+      ++above_;
+    }
+  }
+
+  /// Throws argument_error if the bins differ.
+  histogram& operator+=(const histogram& other) {
+    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
+      throw argument_error("stats::histogram: the bins of merged histograms differ");
+    }
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+    below_ += other.below_;
+    above_ += other.above_;
+    return *this;
+  }
+
+  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
+  [[nodiscard]] std::uint64_t below() const { return below_; }
+  [[nodiscard]] std::uint64_t above() const { return above_; }
+  [[nodiscard]] std::uint64_t total() const {
+    std::uint64_t n = below_ + above_;
+    for (const std::uint64_t c : counts_) n += c;
+    return n;
+  }
+  /// Lower edge of bin i; edge(bins) is the upper end.
+  [[nodiscard]] double edge(std::size_t i) const {
+    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
+  }
+
+ private:
+  double low_, high_;
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t below_ = 0;
+  std::uint64_t above_ = 0;
+};
+
+}  // namespace aib::stats
+
 // aib/cloud/distances.hpp
 
 namespace aib::cloud {
@@ -3141,6 +3220,8 @@ struct distance_options {
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
+
+inline namespace AIB_ISA {
 
 /// Distances from each point of a cloud to another thing, with their statistics.
 ///
@@ -3176,9 +3257,16 @@ class distances {
   /// q in [0, 1], interpolated linearly.
   [[nodiscard]] double quantile(double q) const;
 
+  /// Counts of the distances in equal bins on [0, high). Points beyond the maximum count as above
+  /// it with `drop`, as the maximum with `clamp`; those that are not finite are left out.
+  [[nodiscard]] stats::histogram histogram(double high, std::size_t bins) const;
+
   /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
   /// in the denominator. Throws argument_error if tau is above the maximum.
   [[nodiscard]] double share_below(double tau) const;
+
+  /// The same for several thresholds, in their order, from one pass.
+  [[nodiscard]] std::vector<double> shares_below(std::span<const double> tau) const;
 
  private:
   void apply_maximum();
@@ -3194,6 +3282,8 @@ class distances {
   double sum_of_squares_ = 0;
   double max_ = 0;
 };
+
+}  // namespace AIB_ISA
 
 namespace detail {
 
@@ -3237,6 +3327,8 @@ inline search::nearest_options search_options(const distance_options& options) {
 }
 
 }  // namespace detail
+
+inline namespace AIB_ISA {
 
 inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
     : options_(options) {
@@ -3346,23 +3438,57 @@ inline double distances::quantile(double q) const {
   return stats::quantile_in_place<float>(counted, q);
 }
 
-inline double distances::share_below(double tau) const {
-  if (n_finite() == 0) demand_values("share");
-  if (options_.max_distance && tau > *options_.max_distance) {
-    throw argument_error(
-        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
+inline stats::histogram distances::histogram(double high, std::size_t bins) const {
+  stats::histogram counts(0, high, bins);
+  for (const float d : values_) {
+    if (!std::isnan(d)) counts.add(d);
   }
-  const auto count_chunk = [&](const chunk& c) {
-    std::size_t n = 0;
-    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
-    return n;
-  };
-  const std::size_t below =
-      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
-                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
-  return static_cast<double>(below) / static_cast<double>(n_finite());
+  return counts;
 }
 
+inline std::vector<double> distances::shares_below(std::span<const double> tau) const {
+  if (n_finite() == 0) demand_values("share");
+  for (const double t : tau) {
+    if (options_.max_distance && t > *options_.max_distance) {
+      throw argument_error(
+          message("cloud::distances: tau ", t, " is above max_distance ", *options_.max_distance));
+    }
+  }
+  std::vector<double> ascending(tau.begin(), tau.end());
+  std::sort(ascending.begin(), ascending.end());
+  const auto first_above = [&](double d) {
+    const auto above = std::upper_bound(ascending.begin(), ascending.end(), d);
+    return static_cast<std::size_t>(above - ascending.begin());
+  };
+  using counts = std::vector<std::size_t>;  // of values whose first threshold above is this one
+  const auto count_chunk = [&](const chunk& c) {
+    counts n(tau.size() + 1);
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      if (!std::isnan(values_[i])) ++n[first_above(values_[i])];
+    }
+    return n;
+  };
+  const auto add = [](counts a, const counts& b) {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
+    return a;
+  };
+  counts below = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                               counts(tau.size() + 1), count_chunk, add);
+  for (std::size_t k = 1; k < below.size(); ++k) below[k] += below[k - 1];
+  std::vector<double> share;
+  for (const double t : tau) {
+    const auto place = std::lower_bound(ascending.begin(), ascending.end(), t) - ascending.begin();
+    share.push_back(static_cast<double>(below[static_cast<std::size_t>(place)]) /
+                    static_cast<double>(n_finite()));
+  }
+  return share;
+}
+
+inline double distances::share_below(double tau) const {
+  return shares_below(std::span(&tau, 1)).front();
+}
+
+}  // namespace AIB_ISA
 }  // namespace aib::cloud
 
 // aib/cloud/compare.hpp
@@ -3406,17 +3532,19 @@ struct comparison {
   double reference_beyond;  ///< share of the reference not below max_distance
 };
 
-/// Distances in both directions, each cloud sorted and indexed once.
-struct two_way_distances {
-  distances to_reference;  ///< of the points of the estimate
-  distances to_estimate;   ///< of the points of the reference
-};
-
 namespace detail {
 
 inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
 
 }  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Distances in both directions, each cloud sorted and indexed once.
+struct two_way_distances {
+  distances to_reference;  ///< of the points of the estimate
+  distances to_estimate;   ///< of the points of the reference
+};
 
 /// Distances from the estimate to the reference and back.
 /// Throws undefined_error if either cloud has no finite point.
@@ -3436,6 +3564,20 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                     options),
           distances(detail::roots_in_place(r, search::nearest_squared(r_tree, e_tree, search)),
                     options)};
+}
+
+/// Precision, recall and F-score at thresholds, in their order: with many of them, a curve.
+[[nodiscard]] inline std::vector<threshold_scores> scores_at(const distances& to_reference,
+                                                             const distances& to_estimate,
+                                                             std::span<const double> tau) {
+  const auto precision = to_reference.shares_below(tau);
+  const auto recall = to_estimate.shares_below(tau);
+  std::vector<threshold_scores> scores;
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    scores.push_back(
+        {tau[i], precision[i], recall[i], detail::harmonic_mean(precision[i], recall[i])});
+  }
+  return scores;
 }
 
 /// The scores of distances in both directions, wherever they come from.
@@ -3460,11 +3602,7 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                .n_dropped = to_reference.n_dropped() + to_estimate.n_dropped(),
                .estimate_beyond = to_reference.share_beyond(),
                .reference_beyond = to_estimate.share_beyond()};
-  for (const double t : tau) {
-    const double precision = to_reference.share_below(t);
-    const double recall = to_estimate.share_below(t);
-    c.scores.push_back({t, precision, recall, detail::harmonic_mean(precision, recall)});
-  }
+  c.scores = scores_at(to_reference, to_estimate, tau);
   return c;
 }
 
@@ -3483,6 +3621,419 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                                          .threads = options.threads,
                                          .control = options.control});
   return score(both.to_reference, both.to_estimate, options.tau);
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::cloud
+
+// aib/cloud/neighbours.hpp
+
+namespace aib::cloud {
+
+/// Another point and how far it is.
+struct neighbour {
+  std::size_t index;  ///< in the cloud
+  double distance;
+};
+
+/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
+/// Borrows nothing. For the one nearest point of millions see cloud::distances.
+class neighbours {
+ public:
+  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  neighbours(const neighbours&) = delete;
+  neighbours& operator=(const neighbours&) = delete;
+
+  [[nodiscard]] std::size_t size() const { return points_.position.size(); }
+
+  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
+  /// finds itself first.
+  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
+    k = std::min(k, points_.position.size());
+    std::vector<std::size_t> index(k);
+    std::vector<double> squared(k);
+    const Eigen::Vector3d local = p - points_.origin;
+    const std::size_t n =
+        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
+    std::vector<neighbour> found;
+    for (std::size_t i = 0; i < n; ++i) {
+      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
+    }
+    return found;
+  }
+
+  /// Calls `visit(index)` for each point nearer than `radius`, in no order.
+  template <class Visit>
+  void for_each_within(const Eigen::Vector3d& p, double radius, Visit&& visit) const {
+    const Eigen::Vector3d local = p - points_.origin;
+    visitor<Visit> inside{radius * radius, points_.source, visit};
+    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
+  }
+
+  /// How many points lie nearer than `radius`.
+  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
+    std::size_t n = 0;
+    for_each_within(p, radius, [&](std::size_t) { ++n; });
+    return n;
+  }
+
+ private:
+  /// A result set, which is the same in every version of nanoflann.
+  template <class Visit>
+  struct visitor {
+    double squared_radius;
+    const std::vector<std::size_t>& source;
+    Visit& visit;
+
+    bool addPoint(double squared, std::size_t place) {
+      if (squared < squared_radius) visit(source[place]);
+      return true;
+    }
+    [[nodiscard]] double worstDist() const { return squared_radius; }
+    [[nodiscard]] std::size_t size() const { return 0; }
+    [[nodiscard]] bool full() const { return true; }
+  };
+
+  struct finite_positions {
+    Eigen::Vector3d origin;
+    std::vector<Eigen::Vector3d> position;
+    std::vector<std::size_t> source;
+
+    explicit finite_positions(const cloud& c) : origin(c.origin) {
+      for (std::size_t i = 0; i < c.size(); ++i) {
+        if (!is_finite(c.points[i])) continue;
+        position.push_back(c.points[i].cast<double>());
+        source.push_back(i);
+      }
+    }
+
+    // The interface that nanoflann asks for.
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return position[i][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
+
+  finite_positions points_;
+  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+};
+
+}  // namespace aib::cloud
+
+// aib/cloud/by_label.hpp
+
+namespace aib::cloud {
+
+/// The label of the nearest point of a labelled cloud for each point of another; 0 for a point that
+/// is not finite.
+/// Throws argument_error if the reference has no labels, undefined_error if it has no finite point.
+[[nodiscard]] inline std::vector<std::uint32_t> nearest_labels(const cloud& points,
+                                                               const cloud& labelled,
+                                                               unsigned threads = 0) {
+  if (labelled.labels.size() != labelled.size()) {
+    throw argument_error("cloud::nearest_labels: a reference with labels expected");
+  }
+  const neighbours search(labelled);
+  if (search.size() == 0) {
+    throw undefined_error(message("cloud::nearest_labels: no finite point in the reference (",
+                                  labelled.size(), " points)"));
+  }
+  std::vector<std::uint32_t> labels(points.size());
+  for_each_chunk(points.size(), 1024, threads, {}, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      if (!is_finite(points.points[i])) continue;
+      labels[i] = labelled.labels[search.nearest(points.position(i), 1).front().index];
+    }
+  });
+  return labels;
+}
+
+inline namespace AIB_ISA {
+
+/// The distances of one label: of the points of the estimate that belong to it, and of those of the
+/// reference. Either may be empty.
+struct label_distances {
+  std::uint32_t label;
+  distances to_reference;
+  distances to_estimate;
+};
+
+/// Distances in both directions, label by label in ascending order, for `score` to be taken of
+/// each. What a search found stays as it is: the nearest point may have another label.
+///
+/// estimate_labels, reference_labels   one a point of the estimate, of the reference
+///
+/// Throws argument_error where labels and distances differ in number.
+[[nodiscard]] inline std::vector<label_distances> by_label(
+    const two_way_distances& both,
+    std::span<const std::uint32_t> estimate_labels,
+    std::span<const std::uint32_t> reference_labels,
+    const distance_options& options = {}) {
+  struct values {
+    std::vector<float> estimate, reference;
+  };
+  const auto check = [](const distances& d, std::span<const std::uint32_t> labels) {
+    if (d.size() == labels.size()) return;
+    throw argument_error(message("cloud::by_label: a label for each of ", d.size(),
+                                 " distances expected, found ", labels.size()));
+  };
+  check(both.to_reference, estimate_labels);
+  check(both.to_estimate, reference_labels);
+  std::map<std::uint32_t, values> found;
+  for (std::size_t i = 0; i < estimate_labels.size(); ++i) {
+    found[estimate_labels[i]].estimate.push_back(both.to_reference[i]);
+  }
+  for (std::size_t i = 0; i < reference_labels.size(); ++i) {
+    found[reference_labels[i]].reference.push_back(both.to_estimate[i]);
+  }
+  std::vector<label_distances> labels;
+  for (auto& [label, v] : found) {
+    labels.push_back({label, distances(std::move(v.estimate), options),
+                      distances(std::move(v.reference), options)});
+  }
+  return labels;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::cloud
+
+// aib/raster/view.hpp
+
+namespace aib::raster {
+
+/// A rectangle of pixels that somebody else owns. Row-major, row 0 on top.
+template <class T>
+struct view {
+  T* data = nullptr;
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t stride = 0;  ///< elements from one row to the next
+
+  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) const { return data[y * stride + x]; }
+  [[nodiscard]] std::span<T> row(std::size_t y) const { return {data + y * stride, width}; }
+  [[nodiscard]] std::size_t size() const { return width * height; }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+
+  operator view<const T>() const requires(!std::is_const_v<T>) {
+    return {data, width, height, stride};
+  }
+};
+
+/// The part of a view that begins at (x, y). The caller keeps it inside.
+template <class T>
+[[nodiscard]] view<T> part(
+    view<T> whole, std::size_t x, std::size_t y, std::size_t width, std::size_t height) {
+  return {whole.data + y * whole.stride + x, width, height, whole.stride};
+}
+
+}  // namespace aib::raster
+
+// aib/raster/image.hpp
+
+namespace aib::raster {
+
+/// A rectangle of pixels, owned, rows without gaps.
+template <class T>
+class image {
+ public:
+  image() = default;
+  image(std::size_t width, std::size_t height, T value = {})
+      : width_(width), height_(height), pixels_(width * height, value) {}
+
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t height() const { return height_; }
+  [[nodiscard]] std::size_t size() const { return pixels_.size(); }
+  [[nodiscard]] bool empty() const { return pixels_.empty(); }
+
+  [[nodiscard]] T* data() { return pixels_.data(); }
+  [[nodiscard]] const T* data() const { return pixels_.data(); }
+  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) { return pixels_[y * width_ + x]; }
+  [[nodiscard]] const T& operator()(std::size_t x, std::size_t y) const {
+    return pixels_[y * width_ + x];
+  }
+
+  [[nodiscard]] auto begin() { return pixels_.begin(); }
+  [[nodiscard]] auto end() { return pixels_.end(); }
+  [[nodiscard]] auto begin() const { return pixels_.begin(); }
+  [[nodiscard]] auto end() const { return pixels_.end(); }
+
+  [[nodiscard]] raster::view<T> view() { return {data(), width_, height_, width_}; }
+  [[nodiscard]] raster::view<const T> view() const { return {data(), width_, height_, width_}; }
+  operator raster::view<T>() { return view(); }
+  operator raster::view<const T>() const { return view(); }
+
+  friend bool operator==(const image&, const image&) = default;
+
+ private:
+  std::size_t width_ = 0;
+  std::size_t height_ = 0;
+  std::vector<T> pixels_;
+};
+
+}  // namespace aib::raster
+
+// aib/raster/color.hpp
+
+namespace aib::raster {
+
+/// Red, green, blue, 8 bits each, sRGB as in PNG and JPEG files.
+using rgb = std::array<std::uint8_t, 3>;
+
+using color_image = image<rgb>;
+
+/// A whole number a pixel: classes, or a mask where 0 is outside.
+using label_image = image<std::uint16_t>;
+
+/// 1 where the label is not 0.
+[[nodiscard]] inline image<std::uint8_t> mask_of(const label_image& labels) {
+  image<std::uint8_t> mask(labels.width(), labels.height());
+  for (std::size_t i = 0; i < labels.size(); ++i) mask.data()[i] = labels.data()[i] != 0;
+  return mask;
+}
+
+}  // namespace aib::raster
+
+// aib/raster/colormap.hpp
+
+namespace aib::raster {
+
+/// A colour whose distances are those that people see.
+/// Source: Ottosson, "A perceptual color space for image processing", 2020.
+struct oklab {
+  double lightness;  ///< 0 black, 1 white
+  double a;          ///< green to red
+  double b;          ///< blue to yellow
+};
+
+[[nodiscard]] oklab to_oklab(const rgb& color);
+
+/// Colours outside of sRGB are cut channel by channel.
+[[nodiscard]] rgb to_rgb(const oklab& color);
+
+/// The colour at t in [0, 1] from dark blue to light yellow, in equal steps to the eye; readable
+/// with red-green blindness and in print. t is clamped, NaN is 0.
+[[nodiscard]] rgb sequential_color(double t);
+
+/// The colour at t in [-1, 1]: blue, light grey at 0, red; equal steps to the eye on both sides.
+/// t is clamped, NaN is 0.
+[[nodiscard]] rgb diverging_color(double t);
+
+namespace detail {
+
+inline double to_linear(std::uint8_t channel) {
+  const double c = channel / 255.0;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+inline std::uint8_t from_linear(double c) {
+  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
+}
+
+inline oklab mix(const oklab& from, const oklab& to, double t) {
+  const auto between = [t](double x, double y) { return x + (y - x) * t; };
+  return {between(from.lightness, to.lightness), between(from.a, to.a), between(from.b, to.b)};
+}
+
+inline constexpr std::size_t color_steps = 256;
+
+/// Colours of t = 0, 1/255, ... 1 on the straight line between two colours.
+inline std::array<rgb, color_steps> color_table(const rgb& from, const rgb& to) {
+  std::array<rgb, color_steps> table;
+  const oklab first = to_oklab(from), last = to_oklab(to);
+  for (std::size_t i = 0; i < color_steps; ++i)
+    table[i] = to_rgb(mix(first, last, static_cast<double>(i) / (color_steps - 1)));
+  return table;
+}
+
+inline const rgb& at(const std::array<rgb, color_steps>& table, double t) {
+  const double place = t > 0 ? std::min(t, 1.0) * (color_steps - 1) : 0;
+  return table[static_cast<std::size_t>(place + 0.5)];
+}
+
+}  // namespace detail
+
+inline oklab to_oklab(const rgb& color) {
+  const double r = detail::to_linear(color[0]);
+  const double g = detail::to_linear(color[1]);
+  const double b = detail::to_linear(color[2]);
+  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+inline rgb to_rgb(const oklab& c) {
+  const auto cube = [](double x) { return x * x * x; };
+  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
+  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
+  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
+  return {detail::from_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          detail::from_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          detail::from_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+inline rgb sequential_color(double t) {
+  static const auto table = detail::color_table({0, 32, 96}, {255, 233, 69});
+  return detail::at(table, t);
+}
+
+inline rgb diverging_color(double t) {
+  static const auto below = detail::color_table({238, 238, 238}, {20, 70, 170});
+  static const auto above = detail::color_table({238, 238, 238}, {170, 30, 40});
+  return t < 0 ? detail::at(below, -t) : detail::at(above, t);
+}
+
+}  // namespace aib::raster
+
+// aib/cloud/colored.hpp
+
+namespace aib::cloud {
+
+/// The colours of numbers: grey where there is none (NaN).
+enum class color_scale {
+  sequential,  ///< 0 dark blue to `high` light yellow
+  diverging,   ///< -high blue, 0 light grey, high red
+};
+
+/// A colour for each value; beyond `high` it is that of `high`.
+/// Throws argument_error unless high > 0.
+[[nodiscard]] inline std::vector<color> colors_of(std::span<const float> values,
+                                                  double high,
+                                                  color_scale scale = color_scale::sequential) {
+  if (!(high > 0)) {
+    throw argument_error(message("cloud::colors_of: high > 0 expected, found ", high));
+  }
+  std::vector<color> colors;
+  colors.reserve(values.size());
+  for (const float v : values) {
+    const double place = v / high;
+    colors.push_back(std::isnan(v)                     ? color{128, 128, 128}
+                     : scale == color_scale::diverging ? raster::diverging_color(place)
+                                                       : raster::sequential_color(place));
+  }
+  return colors;
+}
+
+/// The cloud in the colours of one value a point, its errors for example.
+/// Throws argument_error unless there are as many values as points and high > 0.
+[[nodiscard]] inline cloud colored(cloud points,
+                                   std::span<const float> values,
+                                   double high,
+                                   color_scale scale = color_scale::sequential) {
+  if (values.size() != points.size()) {
+    throw argument_error(message("cloud::colored: a value for each of ", points.size(),
+                                 " points expected, found ", values.size()));
+  }
+  points.colors = colors_of(values, high, scale);
+  return points;
 }
 
 }  // namespace aib::cloud
@@ -3582,92 +4133,401 @@ template <volume Volume>
 
 }  // namespace aib::cloud
 
-// aib/cloud/neighbours.hpp
+// aib/cloud/voxel_shares.hpp
 
 namespace aib::cloud {
 
-/// Another point and how far it is.
-struct neighbour {
-  std::size_t index;  ///< in the cloud
-  double distance;
+/// What is known of a point at thresholds that grow: it is good from one of them on; below that it
+/// is bad where it was observed, and left out where it was not.
+struct verdict {
+  std::uint32_t first_good;  ///< index of the threshold; as many as there are: at none
+  bool observed;
 };
 
-/// The finite points of a cloud, to be asked for their k nearest and for those within a radius.
-/// Borrows nothing. For the one nearest point of millions see cloud::distances.
-class neighbours {
- public:
-  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
-  neighbours(const neighbours&) = delete;
-  neighbours& operator=(const neighbours&) = delete;
+/// How the voxel of a point is calculated.
+enum class cell_rule {
+  exact,   ///< in double
+  single,  ///< in float, as ETH3D's tool: points on a border fall elsewhere
+};
 
-  /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
-  /// finds itself first.
-  [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
-    k = std::min(k, points_.position.size());
-    std::vector<std::size_t> index(k);
-    std::vector<double> squared(k);
-    const Eigen::Vector3d local = p - points_.origin;
-    const std::size_t n =
-        k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
-    std::vector<neighbour> found;
-    for (std::size_t i = 0; i < n; ++i) {
-      found.push_back({points_.source[index[i]], std::sqrt(squared[i])});
-    }
-    return found;
+namespace detail {
+
+/// Cell of a position on a lattice that begins `shift` cells from the world's origin.
+inline Eigen::Vector3d cell_of(const Eigen::Vector3d& p,
+                               double size,
+                               double shift,
+                               cell_rule rule) {
+  if (rule == cell_rule::exact)
+    return (p / size + Eigen::Vector3d::Constant(shift)).array().floor();
+  const auto per_unit = static_cast<float>(1.0 / static_cast<float>(size));
+  const Eigen::Vector3f single = p.cast<float>();
+  return (single.array() * per_unit + static_cast<float>(shift)).floor().cast<double>();
+}
+
+/// Points in the order of their cells, which are numbered.
+inline std::vector<std::pair<std::uint64_t, std::size_t>> points_by_cell(const cloud& points,
+                                                                         double size,
+                                                                         double shift,
+                                                                         cell_rule rule) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = -low;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d cell = cell_of(points.position(i), size, shift, rule);
+    low = low.cwiseMin(cell);
+    high = high.cwiseMax(cell);
   }
+  constexpr int bits = 21;
+  if (!((high - low).maxCoeff() < (1 << bits))) {
+    throw argument_error(message("cloud::voxel_shares: size ", size,
+                                 " is too small: more than 2 097 152 voxels on an axis"));
+  }
+  std::vector<std::pair<std::uint64_t, std::size_t>> sorted;
+  sorted.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d cell = cell_of(points.position(i), size, shift, rule) - low;
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) key = key << bits | static_cast<std::uint64_t>(cell[k]);
+    sorted.emplace_back(key, i);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
 
-  /// How many points lie nearer than `radius`.
-  [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
-    const Eigen::Vector3d local = p - points_.origin;
-    counter inside{radius * radius};
-    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
-    return inside.n;
+/// Sum over voxels of the share of good points, and the number of voxels with any known point.
+struct share_sum {
+  double shares = 0;
+  std::size_t voxels = 0;
+};
+
+inline void add_voxel(std::span<const std::pair<std::uint64_t, std::size_t>> members,
+                      std::span<const verdict> verdicts,
+                      std::vector<share_sum>& sums) {
+  for (std::size_t t = 0; t < sums.size(); ++t) {
+    std::size_t good = 0, known = 0;
+    for (const auto& [cell, i] : members) {
+      const bool is_good = verdicts[i].first_good <= t;
+      good += is_good;
+      known += is_good || verdicts[i].observed;
+    }
+    if (known == 0) continue;
+    sums[t].shares += static_cast<double>(good) / static_cast<double>(known);
+    ++sums[t].voxels;
+  }
+}
+
+}  // namespace detail
+
+/// Share of good points at each threshold, averaged over voxels and not over points, so that
+/// density does not weigh: the mean over the voxels of two lattices, half a voxel apart, that have
+/// a point of which something is known. Nothing where there is none.
+///
+/// points     all finite
+/// verdicts   one a point
+/// size       edge of a voxel, unit of the cloud
+///
+/// Throws argument_error for a size that is not positive or far too small for the cloud.
+/// Source: Schöps et al., "A multi-view stereo benchmark with high-resolution images and
+/// multi-camera videos" (ETH3D), CVPR 2017, section 5.
+[[nodiscard]] inline std::vector<std::optional<double>> voxel_shares(
+    const cloud& points,
+    std::span<const verdict> verdicts,
+    std::size_t n_thresholds,
+    double size,
+    cell_rule rule = cell_rule::exact) {
+  if (!(size > 0)) {
+    throw argument_error(message("cloud::voxel_shares: size > 0 expected, found ", size));
+  }
+  std::vector<detail::share_sum> sums(n_thresholds);
+  for (const double shift : {0.0, 0.5}) {
+    const auto sorted = detail::points_by_cell(points, size, shift, rule);
+    for (std::size_t first = 0, last = 0; first < sorted.size(); first = last) {
+      while (last < sorted.size() && sorted[last].first == sorted[first].first) ++last;
+      detail::add_voxel(std::span(sorted).subspan(first, last - first), verdicts, sums);
+    }
+  }
+  std::vector<std::optional<double>> shares;
+  for (const detail::share_sum& s : sums) {
+    shares.push_back(s.voxels == 0 ? std::nullopt
+                                   : std::optional(s.shares / static_cast<double>(s.voxels)));
+  }
+  return shares;
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/free_space.hpp
+
+namespace aib::cloud {
+
+/// Points that a laser scanner saw from one place.
+struct laser_scan {
+  cloud points;             ///< in the world
+  Eigen::Vector3d scanner;  ///< where it stood in the world
+};
+
+/// The cone of a laser beam.
+struct laser_beam {
+  double start_radius = 0.001125;                        ///< at the scanner, unit of the clouds
+  double half_angle = 0.011 * std::numbers::pi / 180.0;  ///< radians
+
+  [[nodiscard]] double radius_at(double distance) const {
+    return start_radius + distance * std::tan(half_angle);
+  }
+};
+
+/// The beams of one scan, to be asked what they say of a point: a beam that passes it on the way to
+/// a surface behind it has seen that there is nothing.
+class scanned_space {
+ public:
+  /// Throws undefined_error if no scan point is finite and away from the scanner.
+  scanned_space(const laser_scan& scan, const laser_beam& beam)
+      : scan_(scan), beam_(beam), directions_(directions_of(scan)), index_(directions_) {}
+
+  /// The verdict of the beams that p lies in: good from the first tolerance on within which their
+  /// scan points lie, observed where p is before one of them.
+  ///
+  /// tolerances   ascending; a distance of exactly a tolerance is within it
+  [[nodiscard]] verdict of(const Eigen::Vector3d& p, std::span<const double> tolerances) const {
+    const Eigen::Vector3d to_point = p - scan_.scanner;
+    const double range = to_point.norm();
+    const double beam_radius = beam_.radius_at(range);
+    verdict v{static_cast<std::uint32_t>(tolerances.size()), false};
+    index_.for_each_within(
+        to_point / std::max(range, 1e-300), reach(beam_radius, range), [&](std::size_t i) {
+          const Eigen::Vector3d to_scan = scan_.points.position(i) - scan_.scanner;
+          const double scan_range = to_scan.norm();
+          const double along = to_scan.dot(to_point) / scan_range;
+          const Eigen::Vector3d beside = to_point - along / scan_range * to_scan;
+          if (along < 0 || beside.norm() > beam_radius) return;
+          const double distance = (to_scan - to_point).norm();
+          const auto within = std::lower_bound(tolerances.begin(), tolerances.end(), distance);
+          v.first_good =
+              std::min(v.first_good, static_cast<std::uint32_t>(within - tolerances.begin()));
+          v.observed = v.observed || along < scan_range;
+        });
+    return v;
   }
 
  private:
-  /// A result set, which is the same in every version of nanoflann.
-  struct counter {
-    double squared_radius;
+  /// The directions of the scan points as points on the unit sphere; NaN where there is none.
+  static cloud directions_of(const laser_scan& scan) {
+    cloud directions;
     std::size_t n = 0;
-
-    bool addPoint(double squared, std::size_t) {
-      n += squared < squared_radius ? 1 : 0;
-      return true;
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      const Eigen::Vector3d to_scan = scan.points.position(i) - scan.scanner;
+      const Eigen::Vector3d direction = to_scan / to_scan.norm();
+      directions.points.push_back(direction.cast<float>());
+      n += direction.allFinite();
     }
-    [[nodiscard]] double worstDist() const { return squared_radius; }
-    [[nodiscard]] std::size_t size() const { return n; }
-    [[nodiscard]] bool full() const { return true; }
-  };
-
-  struct finite_positions {
-    Eigen::Vector3d origin;
-    std::vector<Eigen::Vector3d> position;
-    std::vector<std::size_t> source;
-
-    explicit finite_positions(const cloud& c) : origin(c.origin) {
-      for (std::size_t i = 0; i < c.size(); ++i) {
-        if (!is_finite(c.points[i])) continue;
-        position.push_back(c.points[i].cast<double>());
-        source.push_back(i);
-      }
+    if (n == 0) {
+      throw undefined_error(
+          message("cloud::scanned_space: no beam in a scan of ", scan.points.size(), " points"));
     }
+    return directions;
+  }
 
-    // The interface that nanoflann asks for.
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-      return position[i][static_cast<Eigen::Index>(axis)];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
+  /// How far, on the unit sphere, the direction of a beam around a point can be from the point's,
+  /// and a little more for the rounding of directions.
+  static double reach(double beam_radius, double range) {
+    constexpr double rounding = 1e-6;
+    if (beam_radius >= range) return 2 + rounding;
+    return 2 * std::sin(std::asin(beam_radius / range) / 2) + rounding;
+  }
 
-  finite_positions points_;
-  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+  const laser_scan& scan_;
+  laser_beam beam_;
+  cloud directions_;
+  neighbours index_;
 };
 
+}  // namespace aib::cloud
+
+// aib/cloud/join.hpp
+
+namespace aib::cloud {
+
+namespace detail {
+
+template <class T>
+void extend(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// Drops what not every point has.
+template <class T>
+void clear_unless_all(std::vector<T>& values, std::size_t n) {
+  if (values.size() != n) values.clear();
+}
+
+}  // namespace detail
+
+/// The points of several clouds in one, in their order, counted from the origin of the first that
+/// has points. Normals, colors and labels stay where every cloud with points has them.
+[[nodiscard]] inline cloud joined(std::span<const cloud* const> clouds) {
+  cloud all;
+  for (const cloud* c : clouds) {
+    if (all.empty()) all.origin = c->origin;
+    const Eigen::Vector3d shift = c->origin - all.origin;
+    if (shift.isZero(0)) {
+      detail::extend(all.points, c->points);
+    } else {
+      for (const Eigen::Vector3f& p : c->points) {
+        const Eigen::Vector3d moved = shift + p.cast<double>();
+        all.points.push_back(moved.cast<float>());
+      }
+    }
+    detail::extend(all.normals, c->normals);
+    detail::extend(all.colors, c->colors);
+    detail::extend(all.labels, c->labels);
+    detail::extend(all.warnings, c->warnings);
+  }
+  detail::clear_unless_all(all.normals, all.size());
+  detail::clear_unless_all(all.colors, all.size());
+  detail::clear_unless_all(all.labels, all.size());
+  return all;
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/eth3d.hpp
+
+namespace aib::cloud {
+
+/// Whether a scan point at exactly a tolerance from the reconstruction is complete.
+enum class eth3d_rule {
+  /// As the tool of 2017: yes, but not at the largest tolerance; and voxels calculated in float
+  /// where the clouds lie at the world's origin.
+  official,
+  within,  ///< yes
+  below,   ///< no
+};
+
+struct eth3d_options {
+  std::vector<double> tolerances = {};  ///< in the unit of the clouds
+  double voxel = 0.01;                  ///< edge of the voxels over which shares are averaged
+  laser_beam beam = {};
+  eth3d_rule rule = eth3d_rule::official;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// Scores at one tolerance.
+struct eth3d_scores {
+  double tolerance;
+  double completeness;             ///< share of the scanned surface that was reconstructed
+  std::optional<double> accuracy;  ///< share of the reconstruction; none where nothing was observed
+  std::optional<double> f_score;   ///< harmonic mean of both; 0 where both are 0
+};
+
+struct eth3d_result {
+  std::vector<eth3d_scores> scores;       ///< by ascending tolerance
+  std::vector<std::size_t> n_unobserved;  ///< points of the reconstruction that nothing is known of
+  std::size_t n_reconstruction;           ///< finite points
+  std::size_t n_scanned;
+};
+
+namespace detail {
+
+inline cloud only_finite(const cloud& c) {
+  return select_where(c, [&](std::size_t i) { return is_finite(c.points[i]); });
+}
+
+inline cell_rule cells_of(eth3d_rule rule, const cloud& a, const cloud& b) {
+  const bool single = rule == eth3d_rule::official && a.origin.isZero(0) && b.origin.isZero(0);
+  return single ? cell_rule::single : cell_rule::exact;
+}
+
+/// Whether each scan point is complete, from which tolerance on.
+inline std::vector<verdict> completeness_verdicts(std::span<const float> distance,
+                                                  std::span<const double> tolerances,
+                                                  eth3d_rule rule) {
+  std::vector<verdict> verdicts;
+  for (const float d : distance) {
+    const auto first = rule == eth3d_rule::below
+                           ? std::upper_bound(tolerances.begin(), tolerances.end(), d)
+                           : std::lower_bound(tolerances.begin(), tolerances.end(), d);
+    const bool at_largest = rule == eth3d_rule::official && !(d < tolerances.back());
+    verdicts.push_back(
+        {static_cast<std::uint32_t>(
+             at_largest ? tolerances.size() : static_cast<std::size_t>(first - tolerances.begin())),
+         true});
+  }
+  return verdicts;
+}
+
+/// Good where any scan says so, else bad where any says so.
+inline verdict combined(const verdict& a, const verdict& b) {
+  return {std::min(a.first_good, b.first_good), a.observed || b.observed};
+}
+
+inline std::vector<verdict> accuracy_verdicts(const cloud& reconstruction,
+                                              std::span<const laser_scan> scans,
+                                              const eth3d_options& options) {
+  std::deque<scanned_space> spaces;
+  for (const laser_scan& scan : scans) spaces.emplace_back(scan, options.beam);
+  const auto none = static_cast<std::uint32_t>(options.tolerances.size());
+  std::vector<verdict> verdicts(reconstruction.size(), {none, false});
+  for_each_chunk(
+      reconstruction.size(), 1024, options.threads, options.control, [&](const chunk& c) {
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          for (const scanned_space& space : spaces) {
+            if (verdicts[i].first_good == 0) break;
+            verdicts[i] =
+                combined(verdicts[i], space.of(reconstruction.position(i), options.tolerances));
+          }
+        }
+      });
+  return verdicts;
+}
+
+inline std::size_t count_unobserved(std::span<const verdict> verdicts, std::size_t threshold) {
+  return static_cast<std::size_t>(
+      std::count_if(verdicts.begin(), verdicts.end(),
+                    [&](const verdict& v) { return !v.observed && v.first_good > threshold; }));
+}
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// The scores of the ETH3D benchmark: shares averaged over voxels and not over points, and only
+/// what the beams of the scanner observed counts against a reconstruction.
+///
+/// Accuracy takes a distance of exactly a tolerance as within it.
+/// Throws argument_error without positive tolerances, undefined_error where the reconstruction or a
+/// scan has no finite point.
+/// Source: Schöps et al., CVPR 2017, section 5; github.com/ETH3D/multi-view-evaluation.
+[[nodiscard]] inline eth3d_result eth3d(const cloud& reconstruction,
+                                        std::span<const laser_scan> scans,
+                                        eth3d_options options) {
+  auto& tolerances = options.tolerances;
+  std::sort(tolerances.begin(), tolerances.end());
+  if (tolerances.empty() || !(tolerances.front() > 0)) {
+    throw argument_error("cloud::eth3d: positive tolerances expected");
+  }
+  std::vector<const cloud*> parts;
+  for (const laser_scan& scan : scans) parts.push_back(&scan.points);
+  const cloud estimate = detail::only_finite(reconstruction);
+  const cloud scanned = detail::only_finite(joined(parts));
+  const distances missing(scanned, estimate,
+                          {.threads = options.threads, .control = options.control});
+  const auto complete = detail::completeness_verdicts(missing.values(), tolerances, options.rule);
+  const auto accurate = detail::accuracy_verdicts(estimate, scans, options);
+  const std::size_t n = tolerances.size();
+  const auto cells = detail::cells_of(options.rule, estimate, scanned);
+  const auto completeness = voxel_shares(scanned, complete, n, options.voxel, cells);
+  const auto accuracy = voxel_shares(estimate, accurate, n, options.voxel, cells);
+  eth3d_result result{{}, {}, estimate.size(), scanned.size()};
+  for (std::size_t t = 0; t < n; ++t) {
+    eth3d_scores s{tolerances[t], *completeness[t], accuracy[t], std::nullopt};
+    if (s.accuracy) s.f_score = detail::harmonic_mean(s.completeness, *s.accuracy);
+    result.scores.push_back(s);
+    result.n_unobserved.push_back(detail::count_unobserved(accurate, t));
+  }
+  return result;
+}
+
+}  // namespace AIB_ISA
 }  // namespace aib::cloud
 
 // aib/cloud/normals.hpp
@@ -3760,6 +4620,96 @@ inline double mean_of(std::span<const double> values) {
   const auto r = detail::normal_cosines(reference, estimate, threads);
   const std::span<const double> es(e), rs(r);
   return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
+}
+
+}  // namespace aib::cloud
+
+// aib/cloud/offsets.hpp
+
+namespace aib::cloud {
+
+/// Signed distances, one a point of a cloud, with their statistics: which way something has moved.
+///
+/// Statistics throw undefined_error where no value is finite.
+class offsets {
+ public:
+  explicit offsets(std::vector<float> values) : values_(std::move(values)) {
+    for (const float v : values_) {
+      if (!std::isfinite(v)) continue;
+      ++n_finite_;
+      sum_ += v;
+    }
+    for (const float v : values_) {
+      if (!std::isfinite(v)) continue;
+      squares_ += (v - sum_ / n()) * (v - sum_ / n());
+      absolute_ += std::abs(v);
+    }
+  }
+
+  /// One value a point, in its order; NaN for a point that has none.
+  [[nodiscard]] std::span<const float> values() const { return values_; }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] float operator[](std::size_t i) const { return values_[i]; }
+  [[nodiscard]] std::size_t n_finite() const { return n_finite_; }
+  [[nodiscard]] std::size_t n_dropped() const { return size() - n_finite_; }
+
+  [[nodiscard]] double mean() const { return demand_values(), sum_ / n(); }
+  [[nodiscard]] double mean_absolute() const { return demand_values(), absolute_ / n(); }
+  /// Standard deviation about the mean, over all values (not n - 1).
+  [[nodiscard]] double deviation() const { return demand_values(), std::sqrt(squares_ / n()); }
+  [[nodiscard]] double median() const { return quantile(0.5); }
+  /// q in [0, 1], interpolated linearly.
+  [[nodiscard]] double quantile(double q) const {
+    demand_values();
+    std::vector<float> finite;
+    finite.reserve(n_finite_);
+    std::copy_if(values_.begin(), values_.end(), std::back_inserter(finite),
+                 [](float v) { return std::isfinite(v); });
+    return stats::quantile_in_place<float>(finite, q);
+  }
+
+ private:
+  [[nodiscard]] double n() const { return static_cast<double>(n_finite_); }
+  void demand_values() const {
+    if (n_finite_ > 0) return;
+    throw undefined_error(message("cloud::offsets: no finite value of ", size()));
+  }
+
+  std::vector<float> values_;
+  std::size_t n_finite_ = 0;
+  double sum_ = 0;
+  double squares_ = 0;
+  double absolute_ = 0;
+};
+
+/// How far each point lies before (positive) or behind the reference: its offset from the nearest
+/// point of the reference along that point's normal.
+///
+/// Small where both surfaces agree but one is shifted along itself, so not a distance between
+/// clouds. Throws argument_error if the reference has no normals, undefined_error if it has no
+/// finite point.
+[[nodiscard]] inline offsets offsets_along_normals(const cloud& from,
+                                                   const cloud& reference,
+                                                   unsigned threads = 0) {
+  if (reference.normals.size() != reference.size()) {
+    throw argument_error("cloud::offsets_along_normals: a reference with normals expected");
+  }
+  const neighbours search(reference);
+  if (search.size() == 0) {
+    throw undefined_error(
+        message("cloud::offsets_along_normals: no finite point in the reference (",
+                reference.size(), " points)"));
+  }
+  std::vector<float> values(from.size(), std::numeric_limits<float>::quiet_NaN());
+  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      if (!is_finite(from.points[i])) continue;
+      const std::size_t nearest = search.nearest(from.position(i), 1).front().index;
+      const Eigen::Vector3d apart = from.position(i) - reference.position(nearest);
+      values[i] = static_cast<float>(apart.dot(reference.normals[nearest].cast<double>()));
+    }
+  });
+  return offsets(std::move(values));
 }
 
 }  // namespace aib::cloud
@@ -3876,37 +4826,6 @@ namespace aib::cloud {
 
 }  // namespace aib::cloud
 
-// aib/raster/view.hpp
-
-namespace aib::raster {
-
-/// A rectangle of pixels that somebody else owns. Row-major, row 0 on top.
-template <class T>
-struct view {
-  T* data = nullptr;
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::size_t stride = 0;  ///< elements from one row to the next
-
-  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) const { return data[y * stride + x]; }
-  [[nodiscard]] std::span<T> row(std::size_t y) const { return {data + y * stride, width}; }
-  [[nodiscard]] std::size_t size() const { return width * height; }
-  [[nodiscard]] bool empty() const { return size() == 0; }
-
-  operator view<const T>() const requires(!std::is_const_v<T>) {
-    return {data, width, height, stride};
-  }
-};
-
-/// The part of a view that begins at (x, y). The caller keeps it inside.
-template <class T>
-[[nodiscard]] view<T> part(
-    view<T> whole, std::size_t x, std::size_t y, std::size_t width, std::size_t height) {
-  return {whole.data + y * whole.stride + x, width, height, whole.stride};
-}
-
-}  // namespace aib::raster
-
 // aib/depth/crop.hpp
 
 namespace aib::depth {
@@ -3950,50 +4869,6 @@ template <class T>
 }
 
 }  // namespace aib::depth
-
-// aib/raster/image.hpp
-
-namespace aib::raster {
-
-/// A rectangle of pixels, owned, rows without gaps.
-template <class T>
-class image {
- public:
-  image() = default;
-  image(std::size_t width, std::size_t height, T value = {})
-      : width_(width), height_(height), pixels_(width * height, value) {}
-
-  [[nodiscard]] std::size_t width() const { return width_; }
-  [[nodiscard]] std::size_t height() const { return height_; }
-  [[nodiscard]] std::size_t size() const { return pixels_.size(); }
-  [[nodiscard]] bool empty() const { return pixels_.empty(); }
-
-  [[nodiscard]] T* data() { return pixels_.data(); }
-  [[nodiscard]] const T* data() const { return pixels_.data(); }
-  [[nodiscard]] T& operator()(std::size_t x, std::size_t y) { return pixels_[y * width_ + x]; }
-  [[nodiscard]] const T& operator()(std::size_t x, std::size_t y) const {
-    return pixels_[y * width_ + x];
-  }
-
-  [[nodiscard]] auto begin() { return pixels_.begin(); }
-  [[nodiscard]] auto end() { return pixels_.end(); }
-  [[nodiscard]] auto begin() const { return pixels_.begin(); }
-  [[nodiscard]] auto end() const { return pixels_.end(); }
-
-  [[nodiscard]] raster::view<T> view() { return {data(), width_, height_, width_}; }
-  [[nodiscard]] raster::view<const T> view() const { return {data(), width_, height_, width_}; }
-  operator raster::view<T>() { return view(); }
-  operator raster::view<const T>() const { return view(); }
-
-  friend bool operator==(const image&, const image&) = default;
-
- private:
-  std::size_t width_ = 0;
-  std::size_t height_ = 0;
-  std::vector<T> pixels_;
-};
-
-}  // namespace aib::raster
 
 // aib/depth/depth_map.hpp
 
@@ -4189,21 +5064,26 @@ inline error_sums& error_sums::operator+=(const error_sums& other) {
   return *this;
 }
 
+/// Throws argument_error unless `other` has the size of the estimate.
+template <class Estimate, class Other>
+void check_size(std::string_view function,
+                raster::view<const Estimate> estimate,
+                std::string_view thing,
+                raster::view<const Other> other) {
+  if (estimate.width == other.width && estimate.height == other.height) return;
+  throw argument_error(message(function, ": the estimate is ", estimate.width, "x", estimate.height,
+                               ", the ", thing, " ", other.width, "x", other.height,
+                               ": downsample one to the other first"));
+}
+
 /// Throws argument_error unless both maps, and the mask where there is one, have one size.
 template <class Estimate, class Reference>
 void check_sizes(std::string_view function,
                  raster::view<const Estimate> estimate,
                  raster::view<const Reference> reference,
                  raster::view<const std::uint8_t> mask = {}) {
-  const auto fail = [&](std::string_view thing, std::size_t width, std::size_t height) {
-    throw argument_error(message(function, ": the estimate is ", estimate.width, "x",
-                                 estimate.height, ", the ", thing, " ", width, "x", height,
-                                 ": downsample one to the other first"));
-  };
-  if (estimate.width != reference.width || estimate.height != reference.height)
-    fail("reference", reference.width, reference.height);
-  if (mask.data && (estimate.width != mask.width || estimate.height != mask.height))
-    fail("mask", mask.width, mask.height);
+  check_size(function, estimate, "reference", reference);
+  if (mask.data) check_size(function, estimate, "mask", mask);
 }
 
 namespace detail {
@@ -4613,6 +5493,51 @@ inline affine fitter::least_squares() const {
 
 }  // namespace aib::depth
 
+// aib/depth/label_sums.hpp
+
+namespace aib::depth {
+
+/// Sums of the pixels of each label.
+using label_sums = std::map<std::uint16_t, error_sums>;
+
+inline label_sums& operator+=(label_sums& total, const label_sums& other) {
+  for (const auto& [label, sums] : other) total[label] += sums;
+  return total;
+}
+
+inline namespace AIB_ISA {
+
+/// What sum_errors gives, for the pixels of each label that occurs, 0 among them.
+///
+/// labels   h x w: glass, frame, truss ... Throws argument_error if the sizes differ.
+template <class Estimate, class Reference>
+label_sums sum_errors_by_label(raster::view<const Estimate> estimate,
+                               raster::view<const Reference> reference,
+                               raster::view<const std::uint16_t> labels,
+                               const pixel_rules& rules,
+                               raster::view<const std::uint8_t> mask = {}) {
+  check_sizes("depth::errors", estimate, reference, mask);
+  check_size("depth::errors", estimate, "label image", labels);
+  std::map<std::uint16_t, error_adder> adders;
+  for (std::size_t y = 0; y < labels.height; ++y) {
+    const auto row = labels.row(y);
+    for (std::size_t first = 0, end = 0; first < row.size(); first = end) {
+      while (end < row.size() && row[end] == row[first]) ++end;
+      adders.try_emplace(row[first], rules)
+          .first->second.add(estimate.row(y).subspan(first, end - first),
+                             reference.row(y).subspan(first, end - first),
+                             mask.data ? mask.row(y).data() + first : nullptr);
+    }
+  }
+  label_sums sums;
+  for (const auto& [label, adder] : adders) sums.emplace(label, adder.result());
+  return sums;
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::depth
+
 // aib/depth/errors.hpp
 
 namespace aib::depth {
@@ -4623,6 +5548,7 @@ struct error_options {
   double min = 0;                                        ///< a reference counts above it, exclusive
   double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
   raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  raster::view<const std::uint16_t> labels = {};         ///< none, or what each pixel shows
   crop_rule crop = crop_rule::none;                      ///< the rest is left out
   affine transform = {};  ///< of a batch or sequence (see fitter), where nothing is aligned here
   double clamp_min = 0;   ///< smaller estimates become this
@@ -4746,6 +5672,7 @@ inline error_summary summarize(const error_sums& sums, const affine& transform) 
 struct frame_sums {
   error_sums sums;
   affine transform = {};
+  label_sums by_label = {};  ///< where the options have labels
 };
 
 /// A frame without a valid pixel has the identity for a fit. Throws argument_error if the sizes
@@ -4755,9 +5682,11 @@ frame_sums measure(raster::view<const Estimate> estimate,
                    raster::view<const Reference> reference,
                    const error_options& options) {
   check_sizes("depth::errors", estimate, reference, options.mask);
+  if (options.labels.data) check_size("depth::errors", estimate, "label image", options.labels);
   estimate = cropped(estimate, options.crop);
   reference = cropped(reference, options.crop);
   const raster::view<const std::uint8_t> mask = cropped(options.mask, options.crop);
+  const raster::view<const std::uint16_t> labels = cropped(options.labels, options.crop);
   pixel_rules rules = rules_of(options);
   if (options.align != alignment::none) {
     if (options.transform != affine{})
@@ -4766,7 +5695,9 @@ frame_sums measure(raster::view<const Estimate> estimate,
     fit.add(estimate, reference, mask);
     if (fit.n_valid() > 0) rules.transform = fit.result();
   }
-  return {sum_errors(estimate, reference, rules, mask, options.threads), rules.transform};
+  frame_sums frame{sum_errors(estimate, reference, rules, mask, options.threads), rules.transform};
+  if (labels.data) frame.by_label = sum_errors_by_label(estimate, reference, labels, rules, mask);
+  return frame;
 }
 
 template <class Estimate, class Reference>
@@ -4775,6 +5706,33 @@ error_summary errors(raster::view<const Estimate> estimate,
                      const error_options& options) {
   const frame_sums frame = measure(estimate, reference, options);
   return summarize(frame.sums, frame.transform);
+}
+
+/// What is known of a set of pixels: its sums, and its errors where it has a valid pixel.
+struct error_record {
+  error_sums sums = {};
+  std::optional<error_summary> errors = {};
+};
+
+[[nodiscard]] inline error_record record_of(const error_sums& sums, const affine& transform) {
+  error_record record{sums};
+  if (sums.log_ratio.count() > 0) record.errors = summarize(sums, transform);
+  return record;
+}
+
+/// Errors of the pixels of each label that occurs in `options.labels`: of glass, frame, truss ...
+/// Where something is fitted, it is fitted to the whole frame. Throws argument_error where there
+/// are no labels, and as errors does.
+template <class Estimate, class Reference>
+std::map<std::uint16_t, error_record> errors_by_label(raster::view<const Estimate> estimate,
+                                                      raster::view<const Reference> reference,
+                                                      const error_options& options) {
+  if (!options.labels.data) throw argument_error("depth::errors_by_label: labels expected");
+  const frame_sums frame = measure(estimate, reference, options);
+  std::map<std::uint16_t, error_record> records;
+  for (const auto& [label, sums] : frame.by_label)
+    records.emplace(label, record_of(sums, frame.transform));
+  return records;
 }
 
 template <class Estimate, class Reference>
@@ -4796,6 +5754,7 @@ struct frame_record {
   error_sums sums = {};
   affine transform = {};
   std::optional<error_summary> errors = {};
+  label_sums by_label = {};  ///< of a frame that came with labels
 };
 
 /// The errors of many frames, in both ways of taking them together.
@@ -4814,7 +5773,7 @@ struct frames_summary {
 /// those of a: the result is that of one run in that order, to the last bit.
 class accumulator {
  public:
-  /// The mask of the options is not used: each frame brings its own.
+  /// Mask and labels of the options are not used: each frame brings its own.
   explicit accumulator(const error_options& options = {}) : options_(options) {}
 
   /// Adds a frame; one without a valid pixel is kept as such. Throws argument_error if sizes
@@ -4823,9 +5782,16 @@ class accumulator {
   void add(std::string name,
            raster::view<const Estimate> estimate,
            raster::view<const Reference> reference,
-           raster::view<const std::uint8_t> mask = {});
+           raster::view<const std::uint8_t> mask = {},
+           raster::view<const std::uint16_t> labels = {});
 
   accumulator& operator+=(const accumulator& other);
+
+  /// The labels that occur in any frame, sorted.
+  [[nodiscard]] std::vector<std::uint16_t> labels() const;
+
+  /// The same over the pixels of one label alone, without the frames that have none of them.
+  [[nodiscard]] accumulator of_label(std::uint16_t label) const;
 
   /// The frames in the order in which they were added.
   [[nodiscard]] const std::vector<frame_record>& frames() const { return frames_; }
@@ -4851,6 +5817,7 @@ struct frame {
   depth_map estimate;
   depth_map reference;
   raster::image<std::uint8_t> mask = {};
+  raster::image<std::uint16_t> labels = {};
 };
 
 /// What one fit of scale and shift is over.
@@ -4892,7 +5859,8 @@ template <class Load>
     accumulator one(errors);
     frame f = load(c.begin);
     one.add(std::move(f.name), std::as_const(f.estimate.values).view(),
-            std::as_const(f.reference.values).view(), std::as_const(f.mask).view());
+            std::as_const(f.reference.values).view(), std::as_const(f.mask).view(),
+            std::as_const(f.labels).view());
     return one;
   };
   const auto combine = [](accumulator total, const accumulator& part) { return total += part; };
@@ -4904,13 +5872,37 @@ template <class Estimate, class Reference>
 void accumulator::add(std::string name,
                       raster::view<const Estimate> estimate,
                       raster::view<const Reference> reference,
-                      raster::view<const std::uint8_t> mask) {
+                      raster::view<const std::uint8_t> mask,
+                      raster::view<const std::uint16_t> labels) {
   error_options options = options_;
   options.mask = mask;
-  const frame_sums measured = measure(estimate, reference, options);
-  frame_record record{std::move(name), measured.sums, measured.transform};
-  if (record.sums.log_ratio.count() > 0) record.errors = summarize(record.sums, record.transform);
-  frames_.push_back(std::move(record));
+  options.labels = labels;
+  frame_sums measured = measure(estimate, reference, options);
+  frames_.push_back({.name = std::move(name),
+                     .sums = measured.sums,
+                     .transform = measured.transform,
+                     .errors = record_of(measured.sums, measured.transform).errors,
+                     .by_label = std::move(measured.by_label)});
+}
+
+inline std::vector<std::uint16_t> accumulator::labels() const {
+  std::set<std::uint16_t> all;
+  for (const frame_record& f : frames_)
+    for (const auto& [label, sums] : f.by_label) all.insert(label);
+  return {all.begin(), all.end()};
+}
+
+inline accumulator accumulator::of_label(std::uint16_t label) const {
+  accumulator part(options_);
+  for (const frame_record& f : frames_) {
+    const auto found = f.by_label.find(label);
+    if (found == f.by_label.end()) continue;
+    part.frames_.push_back({.name = f.name,
+                            .sums = found->second,
+                            .transform = f.transform,
+                            .errors = record_of(found->second, f.transform).errors});
+  }
+  return part;
 }
 
 inline accumulator& accumulator::operator+=(const accumulator& other) {
@@ -4970,121 +5962,105 @@ inline std::vector<std::size_t> worst_first(const std::vector<frame_record>& fra
 
 }  // namespace aib::depth
 
-// aib/raster/color.hpp
+// aib/depth/boundary.hpp
 
-namespace aib::raster {
+namespace aib::depth {
 
-/// Red, green, blue, 8 bits each, sRGB as in PNG and JPEG files.
-using rgb = std::array<std::uint8_t, 3>;
-
-using color_image = image<rgb>;
-
-/// A whole number a pixel: classes, or a mask where 0 is outside.
-using label_image = image<std::uint16_t>;
-
-/// 1 where the label is not 0.
-[[nodiscard]] inline image<std::uint8_t> mask_of(const label_image& labels) {
-  image<std::uint8_t> mask(labels.width(), labels.height());
-  for (std::size_t i = 0; i < labels.size(); ++i) mask.data()[i] = labels.data()[i] != 0;
-  return mask;
-}
-
-}  // namespace aib::raster
-
-// aib/raster/colormap.hpp
-
-namespace aib::raster {
-
-/// A colour whose distances are those that people see.
-/// Source: Ottosson, "A perceptual color space for image processing", 2020.
-struct oklab {
-  double lightness;  ///< 0 black, 1 white
-  double a;          ///< green to red
-  double b;          ///< blue to yellow
+struct boundary_options {
+  double t_min = 1.05;  ///< least ratio of two neighbours' depths at a boundary
+  double t_max = 1.25;  ///< the largest of the thresholds
+  std::size_t n = 10;   ///< thresholds, evenly spaced, weighted by their size
 };
 
-[[nodiscard]] oklab to_oklab(const rgb& color);
-
-/// Colours outside of sRGB are cut channel by channel.
-[[nodiscard]] rgb to_rgb(const oklab& color);
-
-/// The colour at t in [0, 1] from dark blue to light yellow, in equal steps to the eye; readable
-/// with red-green blindness and in print. t is clamped, NaN is 0.
-[[nodiscard]] rgb sequential_color(double t);
-
-/// The colour at t in [-1, 1]: blue, light grey at 0, red; equal steps to the eye on both sides.
-/// t is clamped, NaN is 0.
-[[nodiscard]] rgb diverging_color(double t);
+/// Boundary F1 of Depth Pro: do occluding contours lie at the same two neighbours, facing the same
+/// of four ways? It does not see the scale. 0..1, higher is better.
+///
+/// What to know of the definition, which is kept: a contour one pixel off is a miss; the mean is
+/// over the four ways even where the reference has contours facing one alone, so that a perfect
+/// estimate of a vertical step scores 0.25; without any contour it is 0. Depths below 1e-6 become
+/// 1e-6 (a hole in either map is a contour around it); a pair with NaN is none.
+///
+/// Throws argument_error if the sizes differ or n is 0.
+/// Source: Bochkovskii et al., "Depth Pro: sharp monocular metric depth in less than a second",
+/// 2024.
+[[nodiscard]] double boundary_f1(raster::view<const float> estimate,
+                                 raster::view<const float> reference,
+                                 const boundary_options& options = {});
 
 namespace detail {
 
-inline double to_linear(std::uint8_t channel) {
-  const double c = channel / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+/// Contours that face one way: of the estimate, of the reference, of both.
+struct contour_counts {
+  std::uint64_t estimate = 0;
+  std::uint64_t reference = 0;
+  std::uint64_t both = 0;
+};
+
+/// NaN stays NaN, as in NumPy's clip.
+inline double inverse_depth(float depth) {
+  return 1 / (depth < 1e-6f ? 1e-6 : static_cast<double>(depth));
 }
 
-inline std::uint8_t from_linear(double c) {
-  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
+inline void count_pair(double e_ratio, double r_ratio, double t, contour_counts& to) {
+  const bool e = e_ratio > t, r = r_ratio > t;
+  to.estimate += e;
+  to.reference += r;
+  to.both += e && r;
 }
 
-inline oklab mix(const oklab& from, const oklab& to, double t) {
-  const auto between = [t](double x, double y) { return x + (y - x) * t; };
-  return {between(from.lightness, to.lightness), between(from.a, to.a), between(from.b, to.b)};
+/// Left, right, top, bottom.
+inline std::array<contour_counts, 4> count_contours(raster::view<const float> estimate,
+                                                    raster::view<const float> reference,
+                                                    double t) {
+  std::array<contour_counts, 4> counts{};
+  const auto count = [&](std::size_t x, std::size_t y, std::size_t next_x, std::size_t next_y,
+                         std::size_t way) {
+    const double e = inverse_depth(estimate(x, y)), r = inverse_depth(reference(x, y));
+    const double next_e = inverse_depth(estimate(next_x, next_y));
+    const double next_r = inverse_depth(reference(next_x, next_y));
+    count_pair(e / next_e, r / next_r, t, counts[way]);
+    count_pair(next_e / e, next_r / r, t, counts[way + 1]);
+  };
+  for (std::size_t y = 0; y < estimate.height; ++y) {
+    for (std::size_t x = 0; x < estimate.width; ++x) {
+      if (x + 1 < estimate.width) count(x, y, x + 1, y, 0);
+      if (y + 1 < estimate.height) count(x, y, x, y + 1, 2);
+    }
+  }
+  return counts;
 }
 
-inline constexpr std::size_t color_steps = 256;
-
-/// Colours of t = 0, 1/255, ... 1 on the straight line between two colours.
-inline std::array<rgb, color_steps> color_table(const rgb& from, const rgb& to) {
-  std::array<rgb, color_steps> table;
-  const oklab first = to_oklab(from), last = to_oklab(to);
-  for (std::size_t i = 0; i < color_steps; ++i)
-    table[i] = to_rgb(mix(first, last, static_cast<double>(i) / (color_steps - 1)));
-  return table;
-}
-
-inline const rgb& at(const std::array<rgb, color_steps>& table, double t) {
-  const double place = t > 0 ? std::min(t, 1.0) * (color_steps - 1) : 0;
-  return table[static_cast<std::size_t>(place + 0.5)];
+inline double f1_of(const std::array<contour_counts, 4>& counts) {
+  const auto share = [](std::uint64_t part, std::uint64_t whole) {
+    return static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(whole, 1));
+  };
+  double recall = 0, precision = 0;
+  for (const contour_counts& c : counts) {
+    recall += share(c.both, c.reference) / 4;
+    precision += share(c.both, c.estimate) / 4;
+  }
+  return recall + precision > 0 ? 2 * recall * precision / (recall + precision) : 0;
 }
 
 }  // namespace detail
 
-inline oklab to_oklab(const rgb& color) {
-  const double r = detail::to_linear(color[0]);
-  const double g = detail::to_linear(color[1]);
-  const double b = detail::to_linear(color[2]);
-  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
-  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
-  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
-          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
-          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+inline double boundary_f1(raster::view<const float> estimate,
+                          raster::view<const float> reference,
+                          const boundary_options& options) {
+  check_sizes("depth::boundary_f1", estimate, reference);
+  if (options.n == 0) throw argument_error("depth::boundary_f1: n >= 1 expected, found 0");
+  const double intervals = static_cast<double>(std::max<std::size_t>(options.n - 1, 1));
+  const double step = (options.t_max - options.t_min) / intervals;
+  double total = 0, weights = 0;
+  for (std::size_t k = 0; k < options.n; ++k) {
+    const double t = options.t_min + static_cast<double>(k) * step;
+    total += t * detail::f1_of(detail::count_contours(estimate, reference, t));
+    weights += t;
+  }
+  return total / weights;
 }
 
-inline rgb to_rgb(const oklab& c) {
-  const auto cube = [](double x) { return x * x * x; };
-  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
-  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
-  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
-  return {detail::from_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-          detail::from_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-          detail::from_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
-}
-
-inline rgb sequential_color(double t) {
-  static const auto table = detail::color_table({0, 32, 96}, {255, 233, 69});
-  return detail::at(table, t);
-}
-
-inline rgb diverging_color(double t) {
-  static const auto below = detail::color_table({238, 238, 238}, {20, 70, 170});
-  static const auto above = detail::color_table({238, 238, 238}, {170, 30, 40});
-  return t < 0 ? detail::at(below, -t) : detail::at(above, t);
-}
-
-}  // namespace aib::raster
+}  // namespace aib::depth
 
 // aib/raster/downsample.hpp
 
@@ -5383,6 +6359,651 @@ inline raster::color_image error_image(const depth_map& estimate,
 
 }  // namespace aib::depth
 
+// aib/math/camera.hpp
+
+namespace aib::math {
+
+/// Camera models with COLMAP's numbers, up to COLMAP 4.2.
+enum class camera_model : std::int32_t {
+  simple_pinhole = 0,
+  pinhole = 1,
+  simple_radial = 2,
+  radial = 3,
+  opencv = 4,
+  opencv_fisheye = 5,
+  full_opencv = 6,
+  fov = 7,
+  simple_radial_fisheye = 8,
+  radial_fisheye = 9,
+  thin_prism_fisheye = 10,
+  rad_tan_thin_prism_fisheye = 11,
+  simple_division = 12,
+  division = 13,
+  simple_fisheye = 14,
+  fisheye = 15,
+  eucm = 16,
+  equirectangular = 17,
+};
+
+/// What COLMAP calls a model and how its parameters begin.
+struct camera_model_info {
+  std::string_view name;  ///< as in cameras.txt
+  std::size_t n_parameters;
+  std::size_t n_focal;  ///< 1: f, cx, cy, ...   2: fx, fy, cx, cy, ...   0: no focal length
+};
+
+inline constexpr std::array<camera_model_info, 18> camera_models{{
+    {"SIMPLE_PINHOLE", 3, 1},
+    {"PINHOLE", 4, 2},
+    {"SIMPLE_RADIAL", 4, 1},
+    {"RADIAL", 5, 1},
+    {"OPENCV", 8, 2},
+    {"OPENCV_FISHEYE", 8, 2},
+    {"FULL_OPENCV", 12, 2},
+    {"FOV", 5, 2},
+    {"SIMPLE_RADIAL_FISHEYE", 4, 1},
+    {"RADIAL_FISHEYE", 5, 1},
+    {"THIN_PRISM_FISHEYE", 12, 2},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2},
+    {"SIMPLE_DIVISION", 4, 1},
+    {"DIVISION", 5, 2},
+    {"SIMPLE_FISHEYE", 3, 1},
+    {"FISHEYE", 4, 2},
+    {"EUCM", 6, 2},
+    {"EQUIRECTANGULAR", 2, 0},
+}};
+
+[[nodiscard]] constexpr const camera_model_info& info(camera_model model) {
+  return camera_models[static_cast<std::size_t>(model)];
+}
+
+/// The model of COLMAP's number or name; nothing where COLMAP (up to 4.2) has none such.
+[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::int64_t id) {
+  if (id < 0 || id >= static_cast<std::int64_t>(camera_models.size())) return std::nullopt;
+  return static_cast<camera_model>(id);
+}
+[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::string_view name) {
+  for (std::size_t i = 0; i < camera_models.size(); ++i) {
+    if (camera_models[i].name == name) return static_cast<camera_model>(i);
+  }
+  return std::nullopt;
+}
+
+/// Intrinsics of a camera. Pixel (0.5, 0.5) is the centre of the top left pixel.
+struct camera {
+  camera_model model = camera_model::pinhole;
+  std::uint64_t width = 0;         ///< pixels
+  std::uint64_t height = 0;        ///< pixels
+  std::vector<double> parameters;  ///< in COLMAP's order, pixels where they are lengths
+
+  [[nodiscard]] bool has_focal() const { return info(model).n_focal > 0; }
+
+  /// Focal lengths and principal point in pixels. Throw argument_error where the model has none.
+  [[nodiscard]] double fx() const;
+  [[nodiscard]] double fy() const;
+  [[nodiscard]] double cx() const;
+  [[nodiscard]] double cy() const;
+};
+
+namespace detail {
+
+inline double pinhole_parameter(const camera& c, std::size_t index) {
+  if (!c.has_focal())
+    throw argument_error(message("camera: ", info(c.model).name, " has no focal length"));
+  if (index >= c.parameters.size()) {
+    throw argument_error(message("camera: ", info(c.model).name, " expects ",
+                                 info(c.model).n_parameters, " parameters, found ",
+                                 c.parameters.size()));
+  }
+  return c.parameters[index];
+}
+
+}  // namespace detail
+
+inline double camera::fx() const { return detail::pinhole_parameter(*this, 0); }
+inline double camera::fy() const {
+  return detail::pinhole_parameter(*this, info(model).n_focal - 1);
+}
+inline double camera::cx() const { return detail::pinhole_parameter(*this, info(model).n_focal); }
+inline double camera::cy() const {
+  return detail::pinhole_parameter(*this, info(model).n_focal + 1);
+}
+
+/// A camera without distortion.
+[[nodiscard]] inline camera pinhole(
+    std::uint64_t width, std::uint64_t height, double fx, double fy, double cx, double cy) {
+  return {camera_model::pinhole, width, height, {fx, fy, cx, cy}};
+}
+
+}  // namespace aib::math
+
+// aib/math/projection.hpp
+
+namespace aib::math {
+
+/// Pixel of a point, of every camera model; nothing where the model has none: behind a perspective
+/// camera, beyond the range of a division model or of EUCM, at the centre.
+///
+/// p_in_camera   x right, y down, z forward, any unit
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+/// Source: COLMAP 4.2, src/colmap/sensor/models.h; FOV: Devernay and Faugeras 2001; division:
+/// Fitzgibbon, CVPR 2001; EUCM: Khomutenko, Garcia, Martinet, RA-L 2016.
+std::optional<Eigen::Vector2d> project(const camera& camera, const Eigen::Vector3d& p_in_camera);
+
+/// Direction in the camera, unit length, of the points that project to a pixel; nothing where no
+/// point does. The inverse of `project` to 1e-9 pixels within the range where the distortion grows.
+///
+/// Throws argument_error if the camera has another number of parameters than its model.
+std::optional<Eigen::Vector3d> unproject(const camera& camera, const Eigen::Vector2d& pixel);
+
+namespace detail {
+
+using point2 = Eigen::Vector2d;
+
+/// Parameters behind focal length and principal point. Throws argument_error if they are too few or
+/// too many.
+inline std::span<const double> distortion_parameters(const camera& c) {
+  const camera_model_info& model = info(c.model);
+  if (c.parameters.size() != model.n_parameters) {
+    throw argument_error(message("camera: ", model.name, " expects ", model.n_parameters,
+                                 " parameters, found ", c.parameters.size()));
+  }
+  return std::span(c.parameters).subspan(model.n_focal == 0 ? 2 : model.n_focal + 2);
+}
+
+/// How a direction becomes a point of the plane that is distorted.
+enum class image_plane { perspective, equidistant, other };
+
+constexpr image_plane plane_of(camera_model model) {
+  switch (model) {
+    case camera_model::simple_pinhole:
+    case camera_model::pinhole:
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::opencv:
+    case camera_model::full_opencv:
+    case camera_model::fov:
+      return image_plane::perspective;
+    case camera_model::opencv_fisheye:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::thin_prism_fisheye:
+    case camera_model::rad_tan_thin_prism_fisheye:
+    case camera_model::simple_fisheye:
+    case camera_model::fisheye:
+      return image_plane::equidistant;
+    default:
+      return image_plane::other;
+  }
+}
+
+/// 1 + k[0] r2 + k[1] r2^2 + ...
+inline double radial(std::span<const double> k, double r2) {
+  double sum = 0;
+  for (std::size_t i = k.size(); i > 0; --i) sum = (sum + k[i - 1]) * r2;
+  return 1 + sum;
+}
+
+/// Decentring of Brown: p1 is the weight of the y axis, p2 of the x axis.
+inline point2 decentred(const point2& p, double p1, double p2) {
+  const double xy = 2 * p.x() * p.y(), r2 = p.squaredNorm();
+  return {p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
+}
+
+inline point2 distort_full_opencv(std::span<const double> k, const point2& p) {
+  const double numerator[] = {k[0], k[1], k[4]}, r2 = p.squaredNorm();
+  return p * (radial(numerator, r2) / radial(k.subspan(5, 3), r2)) + decentred(p, k[2], k[3]);
+}
+
+inline point2 distort_fov(double omega, const point2& p) {
+  const double r = p.norm();
+  if (omega == 0) return p;
+  const double slope = 2 * std::tan(omega / 2);
+  return p * (r < 1e-12 ? slope / omega : std::atan(r * slope) / (r * omega));
+}
+
+inline point2 distort_thin_prism(std::span<const double> k, const point2& p) {
+  const double radii[] = {k[0], k[1], k[4], k[5]}, r2 = p.squaredNorm();
+  return p * radial(radii, r2) + decentred(p, k[2], k[3]) + r2 * point2(k[6], k[7]);
+}
+
+inline point2 distort_rad_tan_thin_prism(std::span<const double> k, const point2& p) {
+  const point2 q = p * radial(k.first(6), p.squaredNorm());
+  const double r2 = q.squaredNorm();
+  return q + decentred(q, k[7], k[6]) +
+         point2(k[8] * r2 + k[9] * r2 * r2, k[10] * r2 + k[11] * r2 * r2);
+}
+
+/// Distorted point of the image plane of a model that has one.
+inline point2 distort(camera_model model, std::span<const double> k, const point2& p) {
+  switch (model) {
+    case camera_model::simple_radial:
+    case camera_model::radial:
+    case camera_model::simple_radial_fisheye:
+    case camera_model::radial_fisheye:
+    case camera_model::opencv_fisheye:
+      return p * radial(k, p.squaredNorm());
+    case camera_model::opencv:
+      return p * radial(k.first(2), p.squaredNorm()) + decentred(p, k[2], k[3]);
+    case camera_model::full_opencv:
+      return distort_full_opencv(k, p);
+    case camera_model::fov:
+      return distort_fov(k[0], p);
+    case camera_model::thin_prism_fisheye:
+      return distort_thin_prism(k, p);
+    case camera_model::rad_tan_thin_prism_fisheye:
+      return distort_rad_tan_thin_prism(k, p);
+    default:
+      return p;
+  }
+}
+
+inline Eigen::Matrix2d distortion_slope(camera_model model,
+                                        std::span<const double> k,
+                                        const point2& p) {
+  constexpr double step = 1e-6;
+  Eigen::Matrix2d slope;
+  for (int axis = 0; axis < 2; ++axis) {
+    const point2 aside = step * point2::Unit(axis);
+    slope.col(axis) = (distort(model, k, p + aside) - distort(model, k, p - aside)) / (2 * step);
+  }
+  return slope;
+}
+
+/// The point that `distort` takes to `goal`, by Newton's method from there. Nothing where the steps
+/// end beyond the range in which the distortion grows.
+inline std::optional<point2> undistort(camera_model model,
+                                       std::span<const double> k,
+                                       const point2& goal) {
+  point2 p = goal;
+  for (int round = 0; round < 50; ++round) {
+    const point2 miss = distort(model, k, p) - goal;
+    if (!miss.allFinite()) return std::nullopt;
+    if (miss.norm() <= 1e-15 * (1 + goal.norm())) break;
+    p -= distortion_slope(model, k, p).inverse() * miss;
+  }
+  const bool there = (distort(model, k, p) - goal).norm() <= 1e-13 * (1 + goal.norm());
+  const bool this_side = p.dot(goal) > 0 || goal.norm() < 1e-2;
+  if (!there || !this_side || !(distortion_slope(model, k, p).determinant() > 0))
+    return std::nullopt;
+  return p;
+}
+
+inline std::optional<point2> on_plane(image_plane plane, const Eigen::Vector3d& p) {
+  if (plane == image_plane::perspective) {
+    if (!(p.z() > 0)) return std::nullopt;
+    return point2(p.head<2>() / p.z());
+  }
+  const double r = p.head<2>().norm();
+  if (r == 0) return p.z() > 0 ? std::optional(point2(0, 0)) : std::nullopt;
+  return point2(p.head<2>() * (std::atan2(r, p.z()) / r));
+}
+
+inline std::optional<Eigen::Vector3d> off_plane(image_plane plane, const point2& p) {
+  if (plane == image_plane::perspective) return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
+  const double angle = p.norm();
+  if (angle > std::numbers::pi) return std::nullopt;
+  const double share = angle == 0 ? 1 : std::sin(angle) / angle;
+  return Eigen::Vector3d(share * p.x(), share * p.y(), std::cos(angle));
+}
+
+/// The undistorted point of a division model is (x, y, 1 + k r^2).
+inline std::optional<point2> project_division(double k, const Eigen::Vector3d& p) {
+  const double r2 = p.head<2>().squaredNorm();
+  // (x, y) s with s z = 1 + k r2 s^2: the root that is 1 / z without distortion.
+  const double root = p.z() * p.z() - 4 * k * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double denominator = p.z() + std::sqrt(root);
+  if (!(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() * (2 / denominator));
+}
+
+inline std::optional<point2> project_eucm(double alpha, double beta, const Eigen::Vector3d& p) {
+  const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
+  const double w = alpha > 0.5 ? (1 - alpha) / alpha : alpha / (1 - alpha);
+  const double denominator = alpha * d + (1 - alpha) * p.z();
+  if (!(p.z() > -w * d) || !(denominator > 0)) return std::nullopt;
+  return point2(p.head<2>() / denominator);
+}
+
+inline std::optional<Eigen::Vector3d> unproject_eucm(double alpha, double beta, const point2& p) {
+  const double r2 = p.squaredNorm();
+  const double root = 1 - (2 * alpha - 1) * beta * r2;
+  if (!(root >= 0)) return std::nullopt;
+  const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(root) + 1 - alpha);
+  return Eigen::Vector3d(p.x(), p.y(), z).normalized();
+}
+
+/// Longitude to the right and latitude downwards over the whole image.
+inline std::optional<point2> project_sphere(double width, double height, const Eigen::Vector3d& p) {
+  if (p.squaredNorm() == 0) return std::nullopt;
+  const double longitude = std::atan2(p.x(), p.z());
+  const double latitude = std::atan2(p.y(), std::hypot(p.x(), p.z()));
+  return point2((longitude / (2 * std::numbers::pi) + 0.5) * width,
+                (latitude / std::numbers::pi + 0.5) * height);
+}
+
+inline Eigen::Vector3d unproject_sphere(double width, double height, const point2& pixel) {
+  const double longitude = 2 * std::numbers::pi * (pixel.x() / width - 0.5);
+  const double latitude = std::numbers::pi * (pixel.y() / height - 0.5);
+  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+          std::cos(latitude) * std::cos(longitude)};
+}
+
+}  // namespace detail
+
+inline std::optional<Eigen::Vector2d> project(const camera& camera,
+                                              const Eigen::Vector3d& p_in_camera) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!p_in_camera.allFinite()) return std::nullopt;
+  std::optional<detail::point2> p;
+  switch (camera.model) {
+    case camera_model::equirectangular:
+      return detail::project_sphere(camera.parameters[0], camera.parameters[1], p_in_camera);
+    case camera_model::simple_division:
+    case camera_model::division:
+      p = detail::project_division(k[0], p_in_camera);
+      break;
+    case camera_model::eucm:
+      p = detail::project_eucm(k[0], k[1], p_in_camera);
+      break;
+    default:
+      p = detail::on_plane(detail::plane_of(camera.model), p_in_camera);
+      if (p) p = detail::distort(camera.model, k, *p);
+  }
+  if (!p) return std::nullopt;
+  return Eigen::Vector2d(camera.fx() * p->x() + camera.cx(), camera.fy() * p->y() + camera.cy());
+}
+
+inline std::optional<Eigen::Vector3d> unproject(const camera& camera,
+                                                const Eigen::Vector2d& pixel) {
+  const std::span<const double> k = detail::distortion_parameters(camera);
+  if (!pixel.allFinite()) return std::nullopt;
+  if (camera.model == camera_model::equirectangular)
+    return detail::unproject_sphere(camera.parameters[0], camera.parameters[1], pixel);
+  const detail::point2 p((pixel.x() - camera.cx()) / camera.fx(),
+                         (pixel.y() - camera.cy()) / camera.fy());
+  switch (camera.model) {
+    case camera_model::simple_division:
+    case camera_model::division:
+      return Eigen::Vector3d(p.x(), p.y(), 1 + k[0] * p.squaredNorm()).normalized();
+    case camera_model::eucm:
+      return detail::unproject_eucm(k[0], k[1], p);
+    default: {
+      const auto undistorted = detail::undistort(camera.model, k, p);
+      if (!undistorted) return std::nullopt;
+      return detail::off_plane(detail::plane_of(camera.model), *undistorted);
+    }
+  }
+}
+
+}  // namespace aib::math
+
+// aib/depth/rays.hpp
+
+namespace aib::depth {
+
+/// Where the pixels of a map look: (x / z, y / z) in the camera, NaN where it sees nothing in
+/// front. The point of a pixel is `depth * (ray.x, ray.y, 1)`.
+using ray_image = raster::image<Eigen::Vector2d>;
+
+/// The rays through the pixel centres of a map of width x height. Where the camera says another
+/// size, pixels are scaled to it.
+[[nodiscard]] inline ray_image rays(const math::camera& camera,
+                                    std::size_t width,
+                                    std::size_t height) {
+  const auto per_pixel = [](std::uint64_t of_camera, std::size_t of_map) {
+    return of_camera > 0 ? static_cast<double>(of_camera) / static_cast<double>(of_map) : 1;
+  };
+  const double scale_x = per_pixel(camera.width, width), scale_y = per_pixel(camera.height, height);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  ray_image image(width, height, Eigen::Vector2d(nan, nan));
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const Eigen::Vector2d pixel((static_cast<double>(x) + 0.5) * scale_x,
+                                  (static_cast<double>(y) + 0.5) * scale_y);
+      const auto direction = math::unproject(camera, pixel);
+      if (direction && direction->z() > 0) image(x, y) = direction->head<2>() / direction->z();
+    }
+  }
+  return image;
+}
+
+/// The point of a pixel, in the camera.
+[[nodiscard]] inline Eigen::Vector3d point_at(const Eigen::Vector2d& ray, double depth) {
+  return {ray.x() * depth, ray.y() * depth, depth};
+}
+
+}  // namespace aib::depth
+
+// aib/depth/normals.hpp
+
+namespace aib::depth {
+
+/// Unit vectors in the camera that point towards it; 0 where there is none.
+using normal_image = raster::image<Eigen::Vector3f>;
+
+struct normal_options {
+  double max_jump = 0.05;  ///< neighbours whose depths differ by a larger share lie on two surfaces
+};
+
+/// Normals of the surface that a depth map shows: the cross product of the differences between the
+/// points left and right, above and below. A pixel has one where it and these four are valid and on
+/// one surface.
+///
+/// depth   h x w, planar
+/// rays    h x w, see `rays`
+///
+/// Throws argument_error if the sizes differ.
+[[nodiscard]] normal_image normals(raster::view<const float> depth,
+                                   const ray_image& rays,
+                                   const normal_options& options = {});
+
+struct normal_error_options {
+  normal_options normals = {};
+  raster::view<const std::uint8_t> mask = {};  ///< none, or 0 where a pixel is left out
+  /// Angles in radians; by default 11.25, 22.5 and 30 degrees.
+  std::vector<double> tau = {std::numbers::pi / 16, std::numbers::pi / 8, std::numbers::pi / 6};
+};
+
+/// Angles between the normals of estimate and reference, in radians, over the pixels where both
+/// have one.
+struct normal_errors_summary {
+  double mean;
+  double median;
+  double rmse;
+  std::vector<double> below;  ///< share with an angle strictly below each tau
+  std::uint64_t n_valid;      ///< pixels with both normals
+  std::uint64_t n_reference;  ///< with one in the reference
+};
+
+/// Errors of the surface orientation. A scale common to the estimate does not matter.
+/// Throws undefined_error if no pixel has both normals, argument_error if sizes differ.
+/// Source: Fouhey, Gupta, Hebert, "Data-driven 3D primitives for single image understanding",
+/// ICCV 2013 (mean, median, rmse, thresholds).
+[[nodiscard]] normal_errors_summary normal_errors(raster::view<const float> estimate,
+                                                  raster::view<const float> reference,
+                                                  const ray_image& rays,
+                                                  const normal_error_options& options = {});
+
+/// The angle between two vectors, in [0, pi]; exact near 0 and pi too.
+[[nodiscard]] inline double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+namespace detail {
+
+inline Eigen::Vector3f normal_at(raster::view<const float> depth,
+                                 const ray_image& rays,
+                                 std::size_t x,
+                                 std::size_t y,
+                                 double max_jump) {
+  const auto here = static_cast<double>(depth(x, y));
+  bool complete = is_valid(here);
+  const auto point = [&](std::size_t at_x, std::size_t at_y) -> Eigen::Vector3d {
+    const auto there = static_cast<double>(depth(at_x, at_y));
+    const bool same_surface =
+        is_valid(there) && std::max(here, there) <= (1 + max_jump) * std::min(here, there);
+    complete = complete && same_surface;
+    return point_at(rays(at_x, at_y), there);
+  };
+  const Eigen::Vector3d across = point(x + 1, y) - point(x - 1, y);
+  const Eigen::Vector3d down = point(x, y + 1) - point(x, y - 1);
+  const Eigen::Vector3d normal = down.cross(across);
+  const double length = normal.norm();
+  if (!complete || !(length > 0)) return Eigen::Vector3f::Zero();
+  const double towards = normal.dot(point_at(rays(x, y), 1)) < 0 ? 1 : -1;
+  return (towards / length * normal).cast<float>();
+}
+
+}  // namespace detail
+
+inline normal_image normals(raster::view<const float> depth,
+                            const ray_image& rays,
+                            const normal_options& options) {
+  check_size("depth::normals", depth, "rays", rays.view());
+  normal_image image(depth.width, depth.height, Eigen::Vector3f::Zero());
+  for (std::size_t y = 1; y + 1 < depth.height; ++y)
+    for (std::size_t x = 1; x + 1 < depth.width; ++x)
+      image(x, y) = detail::normal_at(depth, rays, x, y, options.max_jump);
+  return image;
+}
+
+inline normal_errors_summary normal_errors(raster::view<const float> estimate,
+                                           raster::view<const float> reference,
+                                           const ray_image& rays,
+                                           const normal_error_options& options) {
+  check_sizes("depth::normal_errors", estimate, reference, options.mask);
+  const normal_image of_estimate = normals(estimate, rays, options.normals);
+  const normal_image of_reference = normals(reference, rays, options.normals);
+  normal_errors_summary result{};
+  std::vector<double> angles;
+  double sum = 0, squares = 0;
+  for (std::size_t y = 0; y < estimate.height; ++y) {
+    for (std::size_t x = 0; x < estimate.width; ++x) {
+      const bool inside = !options.mask.data || options.mask(x, y) != 0;
+      if (!inside || of_reference(x, y).isZero(0)) continue;
+      ++result.n_reference;
+      if (of_estimate(x, y).isZero(0)) continue;
+      const double angle =
+          angle_between(of_estimate(x, y).cast<double>(), of_reference(x, y).cast<double>());
+      angles.push_back(angle);
+      sum += angle;
+      squares += angle * angle;
+    }
+  }
+  if (angles.empty()) {
+    throw undefined_error(message("depth::normal_errors: no pixel has a normal in both maps, ",
+                                  result.n_reference, " have one in the reference"));
+  }
+  const auto n = static_cast<double>(angles.size());
+  result.mean = sum / n;
+  result.rmse = std::sqrt(squares / n);
+  for (const double tau : options.tau) {
+    const auto below =
+        std::count_if(angles.begin(), angles.end(), [tau](double angle) { return angle < tau; });
+    result.below.push_back(static_cast<double>(below) / n);
+  }
+  result.median = stats::quantile_in_place<double>(angles, 0.5);
+  result.n_valid = angles.size();
+  return result;
+}
+
+}  // namespace aib::depth
+
+// aib/depth/planes.hpp
+
+namespace aib::depth {
+
+/// How an estimate shows what is a plane in the reference.
+struct plane_errors_summary {
+  double flatness;     ///< rms distance of the estimate's points from their own best plane
+  double orientation;  ///< angle between the best planes of both maps, radians
+  double
+      offset;  ///< signed distance of the estimate's centroid from the reference's plane, away > 0
+  double reference_flatness;  ///< flatness of the reference: not far above it is as good as it gets
+  std::uint64_t n_valid;      ///< pixels valid in both maps
+};
+
+/// Planarity and orientation errors of walls, decks and panels, one plane a label; 0 is no plane.
+/// Both planes are fitted to the pixels valid in both maps, by least squares of distances. A label
+/// with fewer than three such pixels, or with all of them in a row, is left out.
+///
+/// The estimate is taken as it is: iBims-1 scales it by the median of each plane first, for which
+/// fit it (alignment::median) with the plane as mask.
+/// Throws argument_error if the sizes differ.
+/// Source: Koch et al., "Evaluation of CNN-based single-image depth estimation methods", ECCV 2018.
+[[nodiscard]] std::map<std::uint16_t, plane_errors_summary> plane_errors(
+    raster::view<const float> estimate,
+    raster::view<const float> reference,
+    const ray_image& rays,
+    raster::view<const std::uint16_t> planes);
+
+namespace detail {
+
+struct fitted_plane {
+  Eigen::Vector3d centroid;
+  Eigen::Vector3d normal;  ///< away from the camera
+  double flatness;
+};
+
+/// Nothing where the points lie on a line.
+inline std::optional<fitted_plane> fit_plane(const std::vector<Eigen::Vector3d>& points) {
+  if (points.size() < 3) return std::nullopt;
+  const auto n = static_cast<double>(points.size());
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  for (const auto& p : points) centroid += p / n;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const auto& p : points) scatter += (p - centroid) * (p - centroid).transpose() / n;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  constexpr double least_share = 1e-12;
+  if (!(axes.eigenvalues()[1] > least_share * axes.eigenvalues()[2])) return std::nullopt;
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  return fitted_plane{centroid, normal.dot(centroid) < 0 ? Eigen::Vector3d(-normal) : normal,
+                      std::sqrt(std::max(0.0, axes.eigenvalues()[0]))};
+}
+
+}  // namespace detail
+
+inline std::map<std::uint16_t, plane_errors_summary> plane_errors(
+    raster::view<const float> estimate,
+    raster::view<const float> reference,
+    const ray_image& rays,
+    raster::view<const std::uint16_t> planes) {
+  check_sizes("depth::plane_errors", estimate, reference);
+  check_size("depth::plane_errors", estimate, "rays", rays.view());
+  check_size("depth::plane_errors", estimate, "label image", planes);
+  struct point_pairs {
+    std::vector<Eigen::Vector3d> estimate, reference;
+  };
+  std::map<std::uint16_t, point_pairs> by_label;
+  for (std::size_t y = 0; y < estimate.height; ++y) {
+    for (std::size_t x = 0; x < estimate.width; ++x) {
+      const bool counts = planes(x, y) != 0 && is_valid(estimate(x, y)) &&
+                          is_valid(reference(x, y)) && !std::isnan(rays(x, y).x());
+      if (!counts) continue;
+      point_pairs& pairs = by_label[planes(x, y)];
+      pairs.estimate.push_back(point_at(rays(x, y), static_cast<double>(estimate(x, y))));
+      pairs.reference.push_back(point_at(rays(x, y), static_cast<double>(reference(x, y))));
+    }
+  }
+  std::map<std::uint16_t, plane_errors_summary> result;
+  for (const auto& [label, pairs] : by_label) {
+    const auto e = detail::fit_plane(pairs.estimate), r = detail::fit_plane(pairs.reference);
+    if (!e || !r) continue;
+    const double angle = angle_between(e->normal, r->normal);
+    result[label] = {.flatness = e->flatness,
+                     .orientation = std::min(angle, std::numbers::pi - angle),
+                     .offset = r->normal.dot(e->centroid - r->centroid),
+                     .reference_flatness = r->flatness,
+                     .n_valid = pairs.estimate.size()};
+  }
+  return result;
+}
+
+}  // namespace aib::depth
+
 // aib/depth/presets.hpp
 
 namespace aib::depth {
@@ -5422,6 +7043,398 @@ enum class preset { paper, kitti, monodepth2, cut3r, pi3 };
     default:
       return {};
   }
+}
+
+}  // namespace aib::depth
+
+// aib/depth/risk_coverage.hpp
+
+namespace aib::depth {
+
+/// The error of a pixel that a confidence is held against.
+enum class pixel_error {
+  relative,    ///< |e - r| / r
+  difference,  ///< |e - r|
+  log_ratio,   ///< |ln r - ln e|
+};
+
+struct risk_options {
+  pixel_error error = pixel_error::relative;
+  std::size_t steps = 100;                               ///< of the curves
+  double min = 0;                                        ///< a reference counts above it, exclusive
+  double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
+  raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  affine transform = {};                                 ///< of the estimate, see fitter
+};
+
+/// Mean error of the most confident pixels against their share. Curve k is at share (k + 1) /
+/// steps.
+struct risk_curve {
+  std::vector<double> coverage;  ///< share of the pixels kept, rising to 1
+  std::vector<double> risk;      ///< mean error of the most confident ones
+  std::vector<double> oracle;    ///< mean error of the least wrong ones: no confidence does better
+  double aurc;                   ///< area under `risk`
+  double ause;                   ///< area between both curves in units of the overall mean error
+  std::uint64_t n_valid;         ///< pixels valid in both maps
+  std::uint64_t n_unsure;        ///< of those, without a finite confidence: they are kept last
+};
+
+/// Whether a confidence map knows where its depth map is wrong. The order of the confidences alone
+/// counts, so that any rising scale gives the same; pixels of one confidence share their mean
+/// error.
+///
+/// ause 0: the confidence sorts the pixels by their error; a random one gives a constant risk. A
+/// perfect depth map has ause 0.
+/// Throws undefined_error if no pixel is valid in both maps, argument_error if sizes differ or
+/// steps is 0. Source: Ilg et al., "Uncertainty estimates and multi-hypotheses networks for optical
+/// flow", ECCV 2018 (sparsification error); Geifman, El-Yaniv, NeurIPS 2017 (risk, coverage).
+[[nodiscard]] risk_curve risk_coverage(raster::view<const float> estimate,
+                                       raster::view<const float> reference,
+                                       raster::view<const float> confidence,
+                                       const risk_options& options = {});
+
+namespace detail {
+
+struct judged_pixel {
+  double error;
+  float confidence;
+};
+
+inline double error_of(double e, double r, pixel_error kind) {
+  switch (kind) {
+    case pixel_error::difference:
+      return std::abs(e - r);
+    case pixel_error::log_ratio:
+      return std::abs(std::log(r / e));
+    default:
+      return std::abs(e - r) / r;
+  }
+}
+
+inline std::vector<judged_pixel> judge(raster::view<const float> estimate,
+                                       raster::view<const float> reference,
+                                       raster::view<const float> confidence,
+                                       const risk_options& o) {
+  std::vector<judged_pixel> pixels;
+  for (std::size_t y = 0; y < estimate.height; ++y) {
+    for (std::size_t x = 0; x < estimate.width; ++x) {
+      const auto r = static_cast<double>(reference(x, y)),
+                 raw = static_cast<double>(estimate(x, y));
+      const double e = o.transform.scale * raw + o.transform.shift;
+      const bool counts = (!o.mask.data || o.mask(x, y) != 0) && r > o.min && r < o.max &&
+                          is_valid(raw) && is_valid(e);
+      if (!counts) continue;
+      const float sure = confidence(x, y);
+      const float lowest = -std::numeric_limits<float>::infinity();
+      pixels.push_back({error_of(e, r, o.error), std::isnan(sure) ? lowest : sure});
+    }
+  }
+  return pixels;
+}
+
+/// Mean error of the first share (k + 1) / steps of the pixels, by their running sums.
+inline std::vector<double> mean_of_first(const std::vector<double>& errors, std::size_t steps) {
+  std::vector<double> sums(errors.size());
+  std::partial_sum(errors.begin(), errors.end(), sums.begin());
+  std::vector<double> means;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const std::size_t n = std::max<std::size_t>(1, k * errors.size() / steps);
+    means.push_back(sums[n - 1] / static_cast<double>(n));
+  }
+  return means;
+}
+
+/// The errors, the most confident pixel first; the mean of all where several are as confident.
+inline std::vector<double> by_confidence(std::vector<judged_pixel> pixels) {
+  std::sort(pixels.begin(), pixels.end(), [](const judged_pixel& a, const judged_pixel& b) {
+    return a.confidence != b.confidence ? a.confidence > b.confidence : a.error < b.error;
+  });
+  std::vector<double> errors;
+  for (std::size_t first = 0, end = 0; first < pixels.size(); first = end) {
+    double sum = 0;
+    for (; end < pixels.size() && pixels[end].confidence == pixels[first].confidence; ++end)
+      sum += pixels[end].error;
+    errors.resize(end, sum / static_cast<double>(end - first));
+  }
+  return errors;
+}
+
+}  // namespace detail
+
+inline risk_curve risk_coverage(raster::view<const float> estimate,
+                                raster::view<const float> reference,
+                                raster::view<const float> confidence,
+                                const risk_options& options) {
+  check_sizes("depth::risk_coverage", estimate, reference, options.mask);
+  check_size("depth::risk_coverage", estimate, "confidence map", confidence);
+  if (options.steps == 0) throw argument_error("depth::risk_coverage: steps >= 1 expected");
+  auto pixels = detail::judge(estimate, reference, confidence, options);
+  if (pixels.empty())
+    throw undefined_error("depth::risk_coverage: no pixel is valid in estimate and reference");
+  std::vector<double> best(pixels.size());
+  std::transform(pixels.begin(), pixels.end(), best.begin(), [](const auto& p) { return p.error; });
+  std::sort(best.begin(), best.end());
+  const auto unsure = std::count_if(pixels.begin(), pixels.end(),
+                                    [](const auto& p) { return !std::isfinite(p.confidence); });
+  risk_curve curve{};
+  curve.n_valid = pixels.size();
+  curve.n_unsure = static_cast<std::uint64_t>(unsure);
+  curve.risk = detail::mean_of_first(detail::by_confidence(std::move(pixels)), options.steps);
+  curve.oracle = detail::mean_of_first(best, options.steps);
+  const auto steps = static_cast<double>(options.steps);
+  const double overall = curve.oracle.back();
+  for (std::size_t k = 0; k < options.steps; ++k) {
+    curve.coverage.push_back(static_cast<double>(k + 1) / steps);
+    curve.aurc += curve.risk[k] / steps;
+    if (overall > 0) curve.ause += (curve.risk[k] - curve.oracle[k]) / overall / steps;
+  }
+  return curve;
+}
+
+}  // namespace aib::depth
+
+// aib/depth/strata.hpp
+
+namespace aib::depth {
+
+/// What a pixel of a reference shows. The numbers are labels for errors_by_label.
+enum class stratum : std::uint16_t {
+  nothing = 0,  ///< no valid depth
+  inside = 1,   ///< a surface, away from its edges
+  edge = 2,     ///< near a jump of the depth, on either side
+  thin = 3,     ///< a bar, cable or rail with farther things (or sky) on both sides
+};
+
+struct strata_options {
+  double jump = 0.1;  ///< neighbours are apart where one depth exceeds the other by this share
+  std::size_t edge_width = 2;  ///< pixels from a jump that are still at the edge
+  std::size_t thin_width = 8;  ///< pixels across, along the row or the column
+};
+
+/// Sorts the pixels of a reference into strata: global errors hide what is wrong at edges and in
+/// thin structures. A pixel without depth counts as farther than any other: sky. What lies at the
+/// border of the image is not known to end there. Throws argument_error if jump <= 0.
+[[nodiscard]] raster::image<std::uint16_t> strata(raster::view<const float> reference,
+                                                  const strata_options& options = {});
+
+namespace detail {
+
+/// A line of pixels: a row or a column.
+struct pixel_line {
+  const float* depth;
+  std::uint16_t* stratum;
+  std::size_t size;
+  std::size_t depth_step;
+  std::size_t stratum_step;
+
+  [[nodiscard]] double at(std::size_t i) const {
+    return static_cast<double>(depth[i * depth_step]);
+  }
+  [[nodiscard]] std::uint16_t& mark(std::size_t i) const { return stratum[i * stratum_step]; }
+};
+
+/// Whether pixel i lies farther than its neighbour j by a jump.
+inline bool is_farther(const pixel_line& line, std::size_t i, std::size_t j, double jump) {
+  return is_valid(line.at(j)) && (!is_valid(line.at(i)) || line.at(i) > (1 + jump) * line.at(j));
+}
+
+inline bool has_jump(const pixel_line& line, std::size_t i, double jump) {
+  return is_farther(line, i, i + 1, jump) || is_farther(line, i + 1, i, jump);
+}
+
+/// Marks the valid pixels from `first` to before `end` that are less than `to`.
+inline void raise(const pixel_line& line, std::size_t first, std::size_t end, stratum to) {
+  for (std::size_t i = first; i < end; ++i) {
+    if (is_valid(line.at(i))) line.mark(i) = std::max(line.mark(i), static_cast<std::uint16_t>(to));
+  }
+}
+
+inline void mark_line(const pixel_line& line, const strata_options& o) {
+  std::size_t first = 0;  // of the run that ends at the jump
+  for (std::size_t i = 0; i + 1 < line.size; ++i) {
+    if (!has_jump(line, i, o.jump)) continue;
+    const std::size_t left = i + 1 > o.edge_width ? i + 1 - o.edge_width : 0;
+    raise(line, left, std::min(line.size, i + 1 + o.edge_width), stratum::edge);
+    const bool in_front = first > 0 && is_farther(line, first - 1, first, o.jump) &&
+                          is_farther(line, i + 1, i, o.jump);
+    if (in_front && i + 1 - first <= o.thin_width) raise(line, first, i + 1, stratum::thin);
+    first = i + 1;
+  }
+}
+
+}  // namespace detail
+
+inline raster::image<std::uint16_t> strata(raster::view<const float> reference,
+                                           const strata_options& options) {
+  if (!(options.jump > 0)) {
+    throw argument_error(message("depth::strata: jump > 0 expected, found ", options.jump));
+  }
+  raster::image<std::uint16_t> image(reference.width, reference.height);
+  const auto line = [&](std::size_t x, std::size_t y) {
+    return detail::pixel_line{&reference(x, y), &image(x, y), 0, 0, 0};
+  };
+  for (std::size_t y = 0; y < reference.height && reference.width > 0; ++y) {
+    detail::pixel_line row = line(0, y);
+    row.size = reference.width;
+    row.depth_step = row.stratum_step = 1;
+    detail::raise(row, 0, row.size, stratum::inside);
+    detail::mark_line(row, options);
+  }
+  for (std::size_t x = 0; x < reference.width && reference.height > 0; ++x) {
+    detail::pixel_line column = line(x, 0);
+    column.size = reference.height;
+    column.depth_step = reference.stride;
+    column.stratum_step = image.width();
+    detail::mark_line(column, options);
+  }
+  return image;
+}
+
+}  // namespace aib::depth
+
+// aib/depth/surface_errors.hpp
+
+namespace aib::depth {
+
+/// What a distance between an estimated point and the reference is.
+enum class surface_distance {
+  normal,  ///< from the plane of the reference's surface: what a gauge would read
+  ray,     ///< along the line of sight
+};
+
+struct surface_error_options {
+  surface_distance distance = surface_distance::normal;
+  std::vector<double> tau = {1, 2, 5};  ///< multiples of the ground sampling distance
+  double min = 0;                       ///< a reference counts above it, exclusive
+  double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
+  raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  affine transform = {};                                 ///< of the estimate, see fitter
+  normal_options normals = {};
+};
+
+/// Statistics of non-negative numbers.
+struct spread {
+  double mean;
+  double median;
+  double p95;  ///< 95 % are below it
+  double rmse;
+  double max;
+};
+
+/// How far the estimated surface lies from the reference, over the pixels valid in both.
+struct surface_error_summary {
+  spread distance;                   ///< in the unit of the maps
+  spread gsd;                        ///< the same in ground sampling distances of each pixel
+  double mean_gsd;                   ///< the mean ground sampling distance, in the unit of the maps
+  std::vector<double> within;        ///< share of these pixels strictly below each tau
+  std::vector<double> within_total;  ///< share of the reference's pixels: a hole is a miss
+  double coverage;                   ///< valid in both / valid in the reference
+  std::uint64_t n_valid;
+  std::uint64_t n_reference;
+  std::uint64_t n_without_normal;  ///< measured along the ray, at edges and borders
+};
+
+/// Errors in the units of an inspection: distances at the surface, and multiples of the ground
+/// sampling distance depth / f, the size of a photo's pixel on the object.
+///
+/// estimate, reference   h x w, planar depth in the unit of the reference
+/// camera                of the photo: its own focal length counts, whatever the size of the maps
+///
+/// An error along the ray shrinks by the cosine of the angle of incidence where the surface is seen
+/// at a slant: distance = |e - r| * |n . ray|, n the normal of the reference. Throws
+/// undefined_error, with the counts, if no pixel is valid in both; argument_error if sizes differ
+/// or the camera has no focal length.
+[[nodiscard]] surface_error_summary surface_errors(raster::view<const float> estimate,
+                                                   raster::view<const float> reference,
+                                                   const math::camera& camera,
+                                                   const surface_error_options& options = {});
+
+namespace detail {
+
+inline spread spread_of(std::vector<double>& values) {
+  double sum = 0, squares = 0;
+  for (const double v : values) {
+    sum += v;
+    squares += v * v;
+  }
+  const auto n = static_cast<double>(values.size());
+  return {.mean = sum / n,
+          .median = stats::quantile_in_place<double>(values, 0.5),
+          .p95 = stats::quantile_in_place<double>(values, 0.95),
+          .rmse = std::sqrt(squares / n),
+          .max = *std::max_element(values.begin(), values.end())};
+}
+
+/// Distances of the pixels valid in both maps, and their ground sampling distances.
+struct surface_distances {
+  std::vector<double> distance;
+  std::vector<double> gsd;
+  std::uint64_t n_reference = 0;
+  std::uint64_t n_without_normal = 0;
+};
+
+inline surface_distances measure_surface(raster::view<const float> estimate,
+                                         raster::view<const float> reference,
+                                         const math::camera& camera,
+                                         const surface_error_options& o) {
+  const ray_image ray = rays(camera, reference.width, reference.height);
+  const bool slanted = o.distance == surface_distance::normal;
+  const normal_image normal = slanted ? normals(reference, ray, o.normals) : normal_image();
+  const double focal = (camera.fx() + camera.fy()) / 2;
+  surface_distances found;
+  for (std::size_t y = 0; y < reference.height; ++y) {
+    for (std::size_t x = 0; x < reference.width; ++x) {
+      const auto r = static_cast<double>(reference(x, y)),
+                 raw = static_cast<double>(estimate(x, y));
+      if ((o.mask.data && o.mask(x, y) == 0) || !(r > o.min && r < o.max)) continue;
+      ++found.n_reference;
+      const double e = o.transform.scale * raw + o.transform.shift;
+      if (!is_valid(raw) || !is_valid(e)) continue;
+      const Eigen::Vector3d direction = point_at(ray(x, y), 1);
+      const bool has_normal = slanted && !normal(x, y).isZero(0);
+      const double per_depth =
+          has_normal ? std::abs(normal(x, y).cast<double>().dot(direction)) : direction.norm();
+      if (std::isnan(per_depth)) continue;
+      if (slanted && !has_normal) ++found.n_without_normal;
+      found.distance.push_back(std::abs(e - r) * per_depth);
+      found.gsd.push_back(r / focal);
+    }
+  }
+  return found;
+}
+
+}  // namespace detail
+
+inline surface_error_summary surface_errors(raster::view<const float> estimate,
+                                            raster::view<const float> reference,
+                                            const math::camera& camera,
+                                            const surface_error_options& options) {
+  check_sizes("depth::surface_errors", estimate, reference, options.mask);
+  auto found = detail::measure_surface(estimate, reference, camera, options);
+  if (found.distance.empty()) {
+    throw undefined_error(message("depth::surface_errors: no pixel is valid in both maps, ",
+                                  found.n_reference, " are in the reference"));
+  }
+  const auto n = static_cast<double>(found.distance.size());
+  surface_error_summary result{};
+  std::vector<double> multiples(found.distance.size());
+  for (std::size_t i = 0; i < multiples.size(); ++i) {
+    result.mean_gsd += found.gsd[i] / n;
+    multiples[i] = found.distance[i] / found.gsd[i];
+  }
+  for (const double tau : options.tau) {
+    const auto below = static_cast<double>(std::count_if(
+        multiples.begin(), multiples.end(), [tau](double multiple) { return multiple < tau; }));
+    result.within.push_back(below / n);
+    result.within_total.push_back(below / static_cast<double>(found.n_reference));
+  }
+  result.distance = detail::spread_of(found.distance);
+  result.gsd = detail::spread_of(multiples);
+  result.coverage = n / static_cast<double>(found.n_reference);
+  result.n_valid = multiples.size();
+  result.n_reference = found.n_reference;
+  result.n_without_normal = found.n_without_normal;
+  return result;
 }
 
 }  // namespace aib::depth
@@ -6283,6 +8296,13 @@ struct array_info {
   std::vector<std::size_t> shape = {};
 };
 
+/// Where the bytes of a member lie in the file, as they are or deflated.
+struct npz_place {
+  std::uint64_t begin;
+  std::uint64_t packed;
+  bool is_deflated;
+};
+
 /// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
 /// come from the central directory, contents are checked against their CRC-32. Members are read
 /// when asked for.
@@ -6307,6 +8327,12 @@ class npz_file {
   /// Shape and type from the array's header alone.
   /// Throws as read does.
   [[nodiscard]] array_info read_header(std::string_view name) const;
+
+  /// The same with where the elements begin.
+  [[nodiscard]] detail::npy_header npy_header_of(std::string_view name) const;
+
+  /// For readers of a part of a member. Throws as read does.
+  [[nodiscard]] npz_place place_of(std::string_view name) const;
 
   /// Whether the member is no array of numbers (a pickled object for one) and thus never loaded.
   [[nodiscard]] bool is_unreadable(std::string_view name) const;
@@ -6440,13 +8466,25 @@ inline array npz_file::read(std::string_view name) const {
 }
 
 inline array_info npz_file::read_header(std::string_view name) const {
+  detail::npy_header header = npy_header_of(name);
+  return {header.type, std::move(header.shape)};
+}
+
+inline npz_place npz_file::place_of(std::string_view name) const {
+  const member& m = get(name);
+  static_cast<void>(content(m, std::min<std::uint64_t>(m.size, 1)));  // checks all but the end
+  const std::uint64_t begin = data_offset(m);
+  if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
+  return {begin, m.packed, m.method != 0};
+}
+
+inline detail::npy_header npz_file::npy_header_of(std::string_view name) const {
   const member& m = get(name);
   const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
   const auto preamble =
       detail::read_npy_preamble(content(m, std::min<std::uint64_t>(m.size, 12)), inside);
   const std::uint64_t n = std::min<std::uint64_t>(m.size, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(content(m, n), m.size, inside);
-  return {header.type, std::move(header.shape)};
+  return detail::read_npy_header(content(m, n), m.size, inside);
 }
 
 inline bool npz_file::is_unreadable(std::string_view name) const {
@@ -9403,124 +11441,6 @@ inline math::rigid3 pose_in_frame(const math::rigid3& world_from_camera, const p
 }
 
 }  // namespace aib::io
-
-// aib/math/camera.hpp
-
-namespace aib::math {
-
-/// Camera models with COLMAP's numbers, up to COLMAP 4.2.
-enum class camera_model : std::int32_t {
-  simple_pinhole = 0,
-  pinhole = 1,
-  simple_radial = 2,
-  radial = 3,
-  opencv = 4,
-  opencv_fisheye = 5,
-  full_opencv = 6,
-  fov = 7,
-  simple_radial_fisheye = 8,
-  radial_fisheye = 9,
-  thin_prism_fisheye = 10,
-  rad_tan_thin_prism_fisheye = 11,
-  simple_division = 12,
-  division = 13,
-  simple_fisheye = 14,
-  fisheye = 15,
-  eucm = 16,
-  equirectangular = 17,
-};
-
-/// What COLMAP calls a model and how its parameters begin.
-struct camera_model_info {
-  std::string_view name;  ///< as in cameras.txt
-  std::size_t n_parameters;
-  std::size_t n_focal;  ///< 1: f, cx, cy, ...   2: fx, fy, cx, cy, ...   0: no focal length
-};
-
-inline constexpr std::array<camera_model_info, 18> camera_models{{
-    {"SIMPLE_PINHOLE", 3, 1},
-    {"PINHOLE", 4, 2},
-    {"SIMPLE_RADIAL", 4, 1},
-    {"RADIAL", 5, 1},
-    {"OPENCV", 8, 2},
-    {"OPENCV_FISHEYE", 8, 2},
-    {"FULL_OPENCV", 12, 2},
-    {"FOV", 5, 2},
-    {"SIMPLE_RADIAL_FISHEYE", 4, 1},
-    {"RADIAL_FISHEYE", 5, 1},
-    {"THIN_PRISM_FISHEYE", 12, 2},
-    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2},
-    {"SIMPLE_DIVISION", 4, 1},
-    {"DIVISION", 5, 2},
-    {"SIMPLE_FISHEYE", 3, 1},
-    {"FISHEYE", 4, 2},
-    {"EUCM", 6, 2},
-    {"EQUIRECTANGULAR", 2, 0},
-}};
-
-[[nodiscard]] constexpr const camera_model_info& info(camera_model model) {
-  return camera_models[static_cast<std::size_t>(model)];
-}
-
-/// The model of COLMAP's number or name; nothing where COLMAP (up to 4.2) has none such.
-[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::int64_t id) {
-  if (id < 0 || id >= static_cast<std::int64_t>(camera_models.size())) return std::nullopt;
-  return static_cast<camera_model>(id);
-}
-[[nodiscard]] constexpr std::optional<camera_model> find_camera_model(std::string_view name) {
-  for (std::size_t i = 0; i < camera_models.size(); ++i) {
-    if (camera_models[i].name == name) return static_cast<camera_model>(i);
-  }
-  return std::nullopt;
-}
-
-/// Intrinsics of a camera. Pixel (0.5, 0.5) is the centre of the top left pixel.
-struct camera {
-  camera_model model = camera_model::pinhole;
-  std::uint64_t width = 0;         ///< pixels
-  std::uint64_t height = 0;        ///< pixels
-  std::vector<double> parameters;  ///< in COLMAP's order, pixels where they are lengths
-
-  [[nodiscard]] bool has_focal() const { return info(model).n_focal > 0; }
-
-  /// Focal lengths and principal point in pixels. Throw argument_error where the model has none.
-  [[nodiscard]] double fx() const;
-  [[nodiscard]] double fy() const;
-  [[nodiscard]] double cx() const;
-  [[nodiscard]] double cy() const;
-};
-
-namespace detail {
-
-inline double pinhole_parameter(const camera& c, std::size_t index) {
-  if (!c.has_focal())
-    throw argument_error(message("camera: ", info(c.model).name, " has no focal length"));
-  if (index >= c.parameters.size()) {
-    throw argument_error(message("camera: ", info(c.model).name, " expects ",
-                                 info(c.model).n_parameters, " parameters, found ",
-                                 c.parameters.size()));
-  }
-  return c.parameters[index];
-}
-
-}  // namespace detail
-
-inline double camera::fx() const { return detail::pinhole_parameter(*this, 0); }
-inline double camera::fy() const {
-  return detail::pinhole_parameter(*this, info(model).n_focal - 1);
-}
-inline double camera::cx() const { return detail::pinhole_parameter(*this, info(model).n_focal); }
-inline double camera::cy() const {
-  return detail::pinhole_parameter(*this, info(model).n_focal + 1);
-}
-
-/// A camera without distortion.
-[[nodiscard]] inline camera pinhole(
-    std::uint64_t width, std::uint64_t height, double fx, double fy, double cx, double cy) {
-  return {camera_model::pinhole, width, height, {fx, fy, cx, cy}};
-}
-
-}  // namespace aib::math
 
 // aib/io/colmap_records.hpp
 
@@ -12699,6 +14619,205 @@ inline void write_depth(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/io/jpeg.hpp
+
+#if defined(AIB_WITH_JPEG)
+#include <jpeglib.h>
+
+namespace aib::io {
+
+namespace detail {
+
+/// libjpeg reports an error by a call that must not return: it jumps back into `run`.
+class jpeg_decoder {
+ public:
+  explicit jpeg_decoder(const std::string& bytes) {
+    info_.err = jpeg_std_error(&errors_.base);
+    errors_.base.error_exit = [](j_common_ptr info) {
+      auto* errors = reinterpret_cast<error_manager*>(info->err);
+      info->err->format_message(info, errors->text);
+      std::longjmp(errors->back, 1);
+    };
+    errors_.base.output_message = [](j_common_ptr) {};
+    jpeg_create_decompress(&info_);
+    bytes_ = reinterpret_cast<const unsigned char*>(bytes.data());
+    n_bytes_ = bytes.size();
+  }
+  ~jpeg_decoder() { jpeg_destroy_decompress(&info_); }
+  jpeg_decoder(const jpeg_decoder&) = delete;
+  jpeg_decoder& operator=(const jpeg_decoder&) = delete;
+
+  /// False where libjpeg gave up; `error` says why.
+  bool read_header() {
+    // Nothing with a destructor lives on this frame: longjmp would not run it.
+    if (setjmp(errors_.back) != 0) return false;
+    jpeg_mem_src(&info_, bytes_, n_bytes_);
+    jpeg_read_header(&info_, TRUE);
+    info_.out_color_space = JCS_RGB;
+    return true;
+  }
+
+  bool read_pixels(unsigned char* to) {
+    if (setjmp(errors_.back) != 0) return false;
+    jpeg_start_decompress(&info_);
+    while (info_.output_scanline < info_.output_height) {
+      JSAMPROW row = to + std::size_t{3} * info_.output_width * info_.output_scanline;
+      jpeg_read_scanlines(&info_, &row, 1);
+    }
+    jpeg_finish_decompress(&info_);
+    return errors_.base.num_warnings == 0;
+  }
+
+  [[nodiscard]] std::size_t width() const { return info_.image_width; }
+  [[nodiscard]] std::size_t height() const { return info_.image_height; }
+  [[nodiscard]] const char* error() const {
+    return errors_.text[0] != '\0' ? errors_.text : "damaged pixels";
+  }
+
+ private:
+  struct error_manager {
+    jpeg_error_mgr base;
+    std::jmp_buf back;
+    char text[JMSG_LENGTH_MAX] = {};
+  };
+  jpeg_decompress_struct info_ = {};
+  error_manager errors_ = {};
+  const unsigned char* bytes_ = nullptr;
+  std::size_t n_bytes_ = 0;
+};
+
+}  // namespace detail
+
+/// Reads a JPEG as 8-bit red, green, blue. Needs libjpeg (libjpeg-turbo).
+/// Throws format_error where the file is damaged or larger than 2^27 pixels.
+inline raster::color_image read_jpeg(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  detail::jpeg_decoder decoder(bytes);
+  if (!decoder.read_header()) throw format_error(path, message("jpeg: ", decoder.error()));
+  if (decoder.width() * decoder.height() > std::size_t{1} << 27)
+    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(), " pixels"));
+  raster::color_image image(decoder.width(), decoder.height());
+  if (!decoder.read_pixels(image.data()->data()))
+    throw format_error(path, message("jpeg: ", decoder.error()));
+  return image;
+}
+
+}  // namespace aib::io
+#endif
+
+// aib/io/image.hpp
+
+#if defined(AIB_WITH_PNG)
+#endif
+#if defined(AIB_WITH_JPEG)
+#endif
+
+namespace aib::io {
+
+/// Whether an image file holds one number a pixel (gray, or a palette) and no transparency, so that
+/// read_labels reads it. Throws as read_image does.
+inline bool is_label_image(const std::filesystem::path& path) {
+#if defined(AIB_WITH_PNG)
+  if (kind_of(path) == file_kind::png) {
+    const png_header header = read_png_header(path);
+    return header.is_gray && !header.has_alpha;
+  }
+#endif
+  static_cast<void>(path);
+  return false;
+}
+
+/// Reads a picture, PNG or JPEG, as 8-bit colours. Transparency is dropped.
+/// Throws format_error where the file is damaged or no picture that this build reads.
+inline raster::color_image read_image(const std::filesystem::path& path) {
+  switch (kind_of(path)) {
+    case file_kind::png:
+#if defined(AIB_WITH_PNG)
+      return read_png_color(path);
+#else
+      throw format_error(path, "this build of aib reads no PNG; build it with libspng");
+#endif
+    case file_kind::jpeg:
+#if defined(AIB_WITH_JPEG)
+      return read_jpeg(path);
+#else
+      throw format_error(path, "this build of aib reads no JPEG; build it with libjpeg");
+#endif
+    default:
+      throw format_error(path, "an image expected: PNG or JPEG");
+  }
+}
+
+/// Reads masks and labels: the stored numbers of a gray PNG of 1 to 16 bits or of a palette.
+/// Throws format_error for colours, and where the file is damaged.
+inline raster::label_image read_labels(const std::filesystem::path& path) {
+#if defined(AIB_WITH_PNG)
+  if (kind_of(path) == file_kind::png) return read_png_gray(path);
+#endif
+  throw format_error(path, "a gray PNG or one with a palette expected");
+}
+
+/// Writes gray (8 or 16 bits), rgb or rgba pixels as PNG. Throws argument_error for another
+/// extension or an empty image.
+template <class Pixel>
+void write_image(const std::filesystem::path& path, raster::view<const Pixel> image) {
+#if defined(AIB_WITH_PNG)
+  if (extension_of(path) == ".png") return write_png(path, image);
+#endif
+  static_cast<void>(image);
+  throw argument_error(message("io::write_image: the extension .png expected, found \"",
+                               path.extension().string(), "\""));
+}
+
+}  // namespace aib::io
+
+// aib/io/depth_frame.hpp
+
+namespace aib::io {
+
+/// The files of a frame; an empty path: there is none.
+struct depth_frame_files {
+  std::string name;
+  std::filesystem::path estimate;
+  std::filesystem::path reference;
+  std::filesystem::path mask = {};    ///< gray PNG, 0 leaves a pixel out
+  std::filesystem::path labels = {};  ///< gray or indexed PNG
+};
+
+struct depth_frame_options {
+  depth_options estimate = {};
+  depth_options reference = {};  ///< its size and rule are not used
+  raster::nearest_rule rule = raster::nearest_rule::centre;
+};
+
+/// Reads a frame for depth::accumulate, from any thread. Reference, mask and labels are brought to
+/// the size of the estimate by nearest neighbour, never the other way: of an EXR file by lines the
+/// lines in between are not even decoded.
+///
+///   depth::accumulate(files.size(), {}, [&](auto i) { return io::read_depth_frame(files[i]); });
+///
+/// Throws as read_depth and read_labels do.
+[[nodiscard]] inline depth::frame read_depth_frame(const depth_frame_files& files,
+                                                   const depth_frame_options& options = {}) {
+  depth::frame frame{.name = files.name,
+                     .estimate = read_depth(files.estimate, options.estimate),
+                     .reference = {}};
+  const std::size_t width = frame.estimate.values.width(), height = frame.estimate.values.height();
+  depth_options of_reference = options.reference;
+  of_reference.width = width;
+  of_reference.height = height;
+  of_reference.rule = options.rule;
+  frame.reference = read_depth(files.reference, of_reference);
+  const auto at_size = [&](const std::filesystem::path& path) {
+    return raster::resample_nearest<std::uint16_t>(read_labels(path), width, height, options.rule);
+  };
+  if (!files.mask.empty()) frame.mask = raster::mask_of(at_size(files.mask));
+  if (!files.labels.empty()) frame.labels = at_size(files.labels);
+  return frame;
+}
+
+}  // namespace aib::io
+
 // aib/io/euroc.hpp
 
 namespace aib::io {
@@ -12857,154 +14976,229 @@ inline fingerprint fingerprint_of(const std::filesystem::path& path) {
 
 }  // namespace aib::io
 
-// aib/io/jpeg.hpp
+// aib/io/frame_stack.hpp
 
-#if defined(AIB_WITH_JPEG)
-#include <jpeglib.h>
+#if defined(AIB_WITH_NPZ)
+#endif
 
 namespace aib::io {
+
+/// The frames of one array of an NPY or NPZ file, read one at a time: depth maps, confidences
+/// (H x W each) or point maps (H x W x 3). Memory holds one frame, whatever the file's size. Frames
+/// of a deflated member are cheap in their order; going back begins anew.
+///
+/// The checksum of an NPZ member is not verified, since nobody reads all of it.
+class frame_stack {
+ public:
+  /// key   the array of an NPZ file; empty: as read_array_frames chooses
+  /// Throws io_error where the file cannot be opened, format_error where the array is none of N x H
+  /// x W (x 1, x 3 for the names of point maps) or is in Fortran order.
+  explicit frame_stack(const std::filesystem::path& path, const std::string& key = {});
+
+  [[nodiscard]] std::size_t size() const { return n_; }
+  [[nodiscard]] std::size_t height() const { return height_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] bool is_point_map() const { return components_ == 3; }
+
+  /// Frame i as it is stored. Throws argument_error where there is none.
+  [[nodiscard]] array at(std::size_t i);
+
+  /// Frame i as a picture: of a point map its z.
+  [[nodiscard]] raster::image<float> frame(std::size_t i);
+
+ private:
+  void open_npy(const std::filesystem::path& path);
+  void open_npz(const std::filesystem::path& path, const std::string& key);
+  void set_shape(const detail::npy_header& header,
+                 const std::filesystem::path& path,
+                 std::string_view name);
+
+  /// Bytes of the array's file from its first element on.
+  class source {
+   public:
+    source() = default;
+    source(const source&) = delete;
+    source& operator=(const source&) = delete;
+    virtual ~source() = default;
+    virtual void read(std::uint64_t offset, std::string& to) = 0;
+  };
+  class plain_source;
+#if defined(AIB_WITH_NPZ)
+  class deflated_source;
+#endif
+
+  std::unique_ptr<source> source_;
+  dtype type_ = dtype::f4;
+  bool reversed_ = false;
+  std::size_t n_ = 1, height_ = 0, width_ = 0, components_ = 1;
+};
 
 namespace detail {
 
-/// libjpeg reports an error by a call that must not return: it jumps back into `run`.
-class jpeg_decoder {
- public:
-  explicit jpeg_decoder(const std::string& bytes) {
-    info_.err = jpeg_std_error(&errors_.base);
-    errors_.base.error_exit = [](j_common_ptr info) {
-      auto* errors = reinterpret_cast<error_manager*>(info->err);
-      info->err->format_message(info, errors->text);
-      std::longjmp(errors->back, 1);
-    };
-    errors_.base.output_message = [](j_common_ptr) {};
-    jpeg_create_decompress(&info_);
-    bytes_ = reinterpret_cast<const unsigned char*>(bytes.data());
-    n_bytes_ = bytes.size();
-  }
-  ~jpeg_decoder() { jpeg_destroy_decompress(&info_); }
-  jpeg_decoder(const jpeg_decoder&) = delete;
-  jpeg_decoder& operator=(const jpeg_decoder&) = delete;
-
-  /// False where libjpeg gave up; `error` says why.
-  bool read_header() {
-    // Nothing with a destructor lives on this frame: longjmp would not run it.
-    if (setjmp(errors_.back) != 0) return false;
-    jpeg_mem_src(&info_, bytes_, n_bytes_);
-    jpeg_read_header(&info_, TRUE);
-    info_.out_color_space = JCS_RGB;
-    return true;
-  }
-
-  bool read_pixels(unsigned char* to) {
-    if (setjmp(errors_.back) != 0) return false;
-    jpeg_start_decompress(&info_);
-    while (info_.output_scanline < info_.output_height) {
-      JSAMPROW row = to + std::size_t{3} * info_.output_width * info_.output_scanline;
-      jpeg_read_scanlines(&info_, &row, 1);
-    }
-    jpeg_finish_decompress(&info_);
-    return errors_.base.num_warnings == 0;
-  }
-
-  [[nodiscard]] std::size_t width() const { return info_.image_width; }
-  [[nodiscard]] std::size_t height() const { return info_.image_height; }
-  [[nodiscard]] const char* error() const {
-    return errors_.text[0] != '\0' ? errors_.text : "damaged pixels";
-  }
-
- private:
-  struct error_manager {
-    jpeg_error_mgr base;
-    std::jmp_buf back;
-    char text[JMSG_LENGTH_MAX] = {};
-  };
-  jpeg_decompress_struct info_ = {};
-  error_manager errors_ = {};
-  const unsigned char* bytes_ = nullptr;
-  std::size_t n_bytes_ = 0;
-};
+inline bool is_point_map_name(std::string_view name) {
+  constexpr std::array<std::string_view, 4> names{"local_points", "points", "world_points",
+                                                  "world_points_from_depth"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 }  // namespace detail
 
-/// Reads a JPEG as 8-bit red, green, blue. Needs libjpeg (libjpeg-turbo).
-/// Throws format_error where the file is damaged or larger than 2^27 pixels.
-inline raster::color_image read_jpeg(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
-  detail::jpeg_decoder decoder(bytes);
-  if (!decoder.read_header()) throw format_error(path, message("jpeg: ", decoder.error()));
-  if (decoder.width() * decoder.height() > std::size_t{1} << 27)
-    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(), " pixels"));
-  raster::color_image image(decoder.width(), decoder.height());
-  if (!decoder.read_pixels(image.data()->data()))
-    throw format_error(path, message("jpeg: ", decoder.error()));
+/// A part of a file that lies there as it is.
+class frame_stack::plain_source : public frame_stack::source {
+ public:
+  plain_source(const std::filesystem::path& path, std::uint64_t begin)
+      : file_(path), begin_(begin) {}
+  void read(std::uint64_t offset, std::string& to) override {
+    file_.read_at(begin_ + offset, to.data(), to.size());
+  }
+
+ private:
+  input_file file_;
+  std::uint64_t begin_;
+};
+
+#if defined(AIB_WITH_NPZ)
+
+/// A deflated part of a file, inflated from its begin on as far as is asked for.
+class frame_stack::deflated_source : public frame_stack::source {
+ public:
+  deflated_source(const std::filesystem::path& path,
+                  const npz_place& place,
+                  std::uint64_t header_bytes)
+      : file_(path), place_(place), header_bytes_(header_bytes) {}
+
+  void read(std::uint64_t offset, std::string& to) override {
+    const std::uint64_t wanted = header_bytes_ + offset;
+    if (!stream_ || wanted < at_) restart();
+    std::string skipped;
+    while (at_ < wanted) {
+      constexpr std::uint64_t step = std::uint64_t{1} << 20;
+      skipped.resize(static_cast<std::size_t>(std::min(step, wanted - at_)));
+      fill(skipped);
+    }
+    fill(to);
+  }
+
+ private:
+  void restart() {
+    stream_ = std::make_unique<detail::deflate_stream>();
+    at_ = packed_at_ = 0;
+    block_.clear();
+  }
+
+  void fill(std::string& to) {
+    std::size_t filled = 0;
+    while (filled < to.size()) {
+      const std::size_t before = filled;
+      if (!stream_->fill(to, filled)) fail();
+      if (filled == to.size()) break;
+      if (packed_at_ == place_.packed) {
+        if (filled == before) fail();
+        continue;
+      }
+      constexpr std::uint64_t step = std::uint64_t{1} << 20;
+      block_.resize(static_cast<std::size_t>(std::min(step, place_.packed - packed_at_)));
+      file_.read_at(place_.begin + packed_at_, block_.data(), block_.size());
+      packed_at_ += block_.size();
+      stream_->input(block_);
+    }
+    at_ += to.size();
+  }
+
+  [[noreturn]] void fail() const {
+    throw format_error(file_.path(), "npz: the deflated data is damaged or cut off");
+  }
+
+  input_file file_;
+  npz_place place_;
+  std::uint64_t header_bytes_;
+  std::unique_ptr<detail::deflate_stream> stream_ = {};
+  std::string block_ = {};
+  std::uint64_t at_ = 0;         ///< of the inflated bytes
+  std::uint64_t packed_at_ = 0;  ///< of the deflated ones
+};
+
+inline void frame_stack::open_npz(const std::filesystem::path& path, const std::string& key) {
+  const npz_file file(path);
+  const std::string name = detail::depth_member(file, key);
+  const detail::npy_header header = file.npy_header_of(name);
+  const npz_place place = file.place_of(name);
+  set_shape(header, path, name);
+  if (place.is_deflated)
+    source_ = std::make_unique<deflated_source>(path, place, header.begin);
+  else
+    source_ = std::make_unique<plain_source>(path, place.begin + header.begin);
+}
+
+#else
+
+inline void frame_stack::open_npz(const std::filesystem::path& path, const std::string&) {
+  throw format_error(path, "this build of aib reads no NPZ; build it with zlib");
+}
+
+#endif
+
+inline void frame_stack::open_npy(const std::filesystem::path& path) {
+  const input_file file(path);
+  constexpr std::uint64_t enough = 1 << 16;
+  std::string begin(static_cast<std::size_t>(std::min(file.size(), enough)), '\0');
+  file.read_at(0, begin.data(), begin.size());
+  const detail::npy_header header = detail::read_npy_header(begin, file.size(), path);
+  set_shape(header, path, path.stem().string());
+  source_ = std::make_unique<plain_source>(path, header.begin);
+}
+
+inline frame_stack::frame_stack(const std::filesystem::path& path, const std::string& key) {
+  std::string begin(2, '\0');
+  {
+    const input_file file(path);
+    if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
+  }
+  if (begin == "PK")
+    open_npz(path, key);
+  else
+    open_npy(path);
+}
+
+inline void frame_stack::set_shape(const detail::npy_header& header,
+                                   const std::filesystem::path& path,
+                                   std::string_view name) {
+  std::vector<std::size_t> shape = header.shape;
+  if (shape.size() > 2 && shape.back() == 3 && detail::is_point_map_name(name)) {
+    components_ = 3;
+    shape.pop_back();
+  }
+  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
+  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
+  if (shape.size() < 2 || shape.size() > 3 || header.fortran ||
+      detail::element_count(shape).value_or(0) == 0) {
+    throw format_error(
+        path, message("an array of N x H x W in C order expected in ", name, ", found ",
+                      text_of_shape(header.shape), header.fortran ? " in Fortran order" : ""));
+  }
+  type_ = header.type;
+  reversed_ = header.order != std::endian::native;
+  width_ = shape.back();
+  height_ = shape[shape.size() - 2];
+  if (shape.size() == 3) n_ = shape.front();
+}
+
+inline array frame_stack::at(std::size_t i) {
+  if (i >= n_) throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
+  array frame{type_, {height_, width_}, {}};
+  if (components_ > 1) frame.shape.push_back(components_);
+  frame.bytes.resize(height_ * width_ * components_ * size_of(type_));
+  source_->read(std::uint64_t{i} * frame.bytes.size(), frame.bytes);
+  if (reversed_) detail::reverse_elements(frame.bytes, size_of(type_));
+  return frame;
+}
+
+inline raster::image<float> frame_stack::frame(std::size_t i) {
+  const std::vector<float> values = at(i).values<float>();
+  raster::image<float> image(width_, height_);
+  for (std::size_t k = 0; k < image.size(); ++k)
+    image.data()[k] = values[k * components_ + components_ - 1];
   return image;
-}
-
-}  // namespace aib::io
-#endif
-
-// aib/io/image.hpp
-
-#if defined(AIB_WITH_PNG)
-#endif
-#if defined(AIB_WITH_JPEG)
-#endif
-
-namespace aib::io {
-
-/// Whether an image file holds one number a pixel (gray, or a palette) and no transparency, so that
-/// read_labels reads it. Throws as read_image does.
-inline bool is_label_image(const std::filesystem::path& path) {
-#if defined(AIB_WITH_PNG)
-  if (kind_of(path) == file_kind::png) {
-    const png_header header = read_png_header(path);
-    return header.is_gray && !header.has_alpha;
-  }
-#endif
-  static_cast<void>(path);
-  return false;
-}
-
-/// Reads a picture, PNG or JPEG, as 8-bit colours. Transparency is dropped.
-/// Throws format_error where the file is damaged or no picture that this build reads.
-inline raster::color_image read_image(const std::filesystem::path& path) {
-  switch (kind_of(path)) {
-    case file_kind::png:
-#if defined(AIB_WITH_PNG)
-      return read_png_color(path);
-#else
-      throw format_error(path, "this build of aib reads no PNG; build it with libspng");
-#endif
-    case file_kind::jpeg:
-#if defined(AIB_WITH_JPEG)
-      return read_jpeg(path);
-#else
-      throw format_error(path, "this build of aib reads no JPEG; build it with libjpeg");
-#endif
-    default:
-      throw format_error(path, "an image expected: PNG or JPEG");
-  }
-}
-
-/// Reads masks and labels: the stored numbers of a gray PNG of 1 to 16 bits or of a palette.
-/// Throws format_error for colours, and where the file is damaged.
-inline raster::label_image read_labels(const std::filesystem::path& path) {
-#if defined(AIB_WITH_PNG)
-  if (kind_of(path) == file_kind::png) return read_png_gray(path);
-#endif
-  throw format_error(path, "a gray PNG or one with a palette expected");
-}
-
-/// Writes gray (8 or 16 bits), rgb or rgba pixels as PNG. Throws argument_error for another
-/// extension or an empty image.
-template <class Pixel>
-void write_image(const std::filesystem::path& path, raster::view<const Pixel> image) {
-#if defined(AIB_WITH_PNG)
-  if (extension_of(path) == ".png") return write_png(path, image);
-#endif
-  static_cast<void>(image);
-  throw argument_error(message("io::write_image: the extension .png expected, found \"",
-                               path.extension().string(), "\""));
 }
 
 }  // namespace aib::io
@@ -14793,269 +16987,6 @@ inline void write_npz(const std::filesystem::path& path,
 }  // namespace aib::io
 #endif
 
-// aib/math/projection.hpp
-
-namespace aib::math {
-
-/// Pixel of a point, of every camera model; nothing where the model has none: behind a perspective
-/// camera, beyond the range of a division model or of EUCM, at the centre.
-///
-/// p_in_camera   x right, y down, z forward, any unit
-///
-/// Throws argument_error if the camera has another number of parameters than its model.
-/// Source: COLMAP 4.2, src/colmap/sensor/models.h; FOV: Devernay and Faugeras 2001; division:
-/// Fitzgibbon, CVPR 2001; EUCM: Khomutenko, Garcia, Martinet, RA-L 2016.
-std::optional<Eigen::Vector2d> project(const camera& camera, const Eigen::Vector3d& p_in_camera);
-
-/// Direction in the camera, unit length, of the points that project to a pixel; nothing where no
-/// point does. The inverse of `project` to 1e-9 pixels within the range where the distortion grows.
-///
-/// Throws argument_error if the camera has another number of parameters than its model.
-std::optional<Eigen::Vector3d> unproject(const camera& camera, const Eigen::Vector2d& pixel);
-
-namespace detail {
-
-using point2 = Eigen::Vector2d;
-
-/// Parameters behind focal length and principal point. Throws argument_error if they are too few or
-/// too many.
-inline std::span<const double> distortion_parameters(const camera& c) {
-  const camera_model_info& model = info(c.model);
-  if (c.parameters.size() != model.n_parameters) {
-    throw argument_error(message("camera: ", model.name, " expects ", model.n_parameters,
-                                 " parameters, found ", c.parameters.size()));
-  }
-  return std::span(c.parameters).subspan(model.n_focal == 0 ? 2 : model.n_focal + 2);
-}
-
-/// How a direction becomes a point of the plane that is distorted.
-enum class image_plane { perspective, equidistant, other };
-
-constexpr image_plane plane_of(camera_model model) {
-  switch (model) {
-    case camera_model::simple_pinhole:
-    case camera_model::pinhole:
-    case camera_model::simple_radial:
-    case camera_model::radial:
-    case camera_model::opencv:
-    case camera_model::full_opencv:
-    case camera_model::fov:
-      return image_plane::perspective;
-    case camera_model::opencv_fisheye:
-    case camera_model::simple_radial_fisheye:
-    case camera_model::radial_fisheye:
-    case camera_model::thin_prism_fisheye:
-    case camera_model::rad_tan_thin_prism_fisheye:
-    case camera_model::simple_fisheye:
-    case camera_model::fisheye:
-      return image_plane::equidistant;
-    default:
-      return image_plane::other;
-  }
-}
-
-/// 1 + k[0] r2 + k[1] r2^2 + ...
-inline double radial(std::span<const double> k, double r2) {
-  double sum = 0;
-  for (std::size_t i = k.size(); i > 0; --i) sum = (sum + k[i - 1]) * r2;
-  return 1 + sum;
-}
-
-/// Decentring of Brown: p1 is the weight of the y axis, p2 of the x axis.
-inline point2 decentred(const point2& p, double p1, double p2) {
-  const double xy = 2 * p.x() * p.y(), r2 = p.squaredNorm();
-  return {p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
-}
-
-inline point2 distort_full_opencv(std::span<const double> k, const point2& p) {
-  const double numerator[] = {k[0], k[1], k[4]}, r2 = p.squaredNorm();
-  return p * (radial(numerator, r2) / radial(k.subspan(5, 3), r2)) + decentred(p, k[2], k[3]);
-}
-
-inline point2 distort_fov(double omega, const point2& p) {
-  const double r = p.norm();
-  if (omega == 0) return p;
-  const double slope = 2 * std::tan(omega / 2);
-  return p * (r < 1e-12 ? slope / omega : std::atan(r * slope) / (r * omega));
-}
-
-inline point2 distort_thin_prism(std::span<const double> k, const point2& p) {
-  const double radii[] = {k[0], k[1], k[4], k[5]}, r2 = p.squaredNorm();
-  return p * radial(radii, r2) + decentred(p, k[2], k[3]) + r2 * point2(k[6], k[7]);
-}
-
-inline point2 distort_rad_tan_thin_prism(std::span<const double> k, const point2& p) {
-  const point2 q = p * radial(k.first(6), p.squaredNorm());
-  const double r2 = q.squaredNorm();
-  return q + decentred(q, k[7], k[6]) +
-         point2(k[8] * r2 + k[9] * r2 * r2, k[10] * r2 + k[11] * r2 * r2);
-}
-
-/// Distorted point of the image plane of a model that has one.
-inline point2 distort(camera_model model, std::span<const double> k, const point2& p) {
-  switch (model) {
-    case camera_model::simple_radial:
-    case camera_model::radial:
-    case camera_model::simple_radial_fisheye:
-    case camera_model::radial_fisheye:
-    case camera_model::opencv_fisheye:
-      return p * radial(k, p.squaredNorm());
-    case camera_model::opencv:
-      return p * radial(k.first(2), p.squaredNorm()) + decentred(p, k[2], k[3]);
-    case camera_model::full_opencv:
-      return distort_full_opencv(k, p);
-    case camera_model::fov:
-      return distort_fov(k[0], p);
-    case camera_model::thin_prism_fisheye:
-      return distort_thin_prism(k, p);
-    case camera_model::rad_tan_thin_prism_fisheye:
-      return distort_rad_tan_thin_prism(k, p);
-    default:
-      return p;
-  }
-}
-
-inline Eigen::Matrix2d distortion_slope(camera_model model,
-                                        std::span<const double> k,
-                                        const point2& p) {
-  constexpr double step = 1e-6;
-  Eigen::Matrix2d slope;
-  for (int axis = 0; axis < 2; ++axis) {
-    const point2 aside = step * point2::Unit(axis);
-    slope.col(axis) = (distort(model, k, p + aside) - distort(model, k, p - aside)) / (2 * step);
-  }
-  return slope;
-}
-
-/// The point that `distort` takes to `goal`, by Newton's method from there. Nothing where the steps
-/// end beyond the range in which the distortion grows.
-inline std::optional<point2> undistort(camera_model model,
-                                       std::span<const double> k,
-                                       const point2& goal) {
-  point2 p = goal;
-  for (int round = 0; round < 50; ++round) {
-    const point2 miss = distort(model, k, p) - goal;
-    if (!miss.allFinite()) return std::nullopt;
-    if (miss.norm() <= 1e-15 * (1 + goal.norm())) break;
-    p -= distortion_slope(model, k, p).inverse() * miss;
-  }
-  const bool there = (distort(model, k, p) - goal).norm() <= 1e-13 * (1 + goal.norm());
-  const bool this_side = p.dot(goal) > 0 || goal.norm() < 1e-2;
-  if (!there || !this_side || !(distortion_slope(model, k, p).determinant() > 0))
-    return std::nullopt;
-  return p;
-}
-
-inline std::optional<point2> on_plane(image_plane plane, const Eigen::Vector3d& p) {
-  if (plane == image_plane::perspective) {
-    if (!(p.z() > 0)) return std::nullopt;
-    return point2(p.head<2>() / p.z());
-  }
-  const double r = p.head<2>().norm();
-  if (r == 0) return p.z() > 0 ? std::optional(point2(0, 0)) : std::nullopt;
-  return point2(p.head<2>() * (std::atan2(r, p.z()) / r));
-}
-
-inline std::optional<Eigen::Vector3d> off_plane(image_plane plane, const point2& p) {
-  if (plane == image_plane::perspective) return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
-  const double angle = p.norm();
-  if (angle > std::numbers::pi) return std::nullopt;
-  const double share = angle == 0 ? 1 : std::sin(angle) / angle;
-  return Eigen::Vector3d(share * p.x(), share * p.y(), std::cos(angle));
-}
-
-/// The undistorted point of a division model is (x, y, 1 + k r^2).
-inline std::optional<point2> project_division(double k, const Eigen::Vector3d& p) {
-  const double r2 = p.head<2>().squaredNorm();
-  // (x, y) s with s z = 1 + k r2 s^2: the root that is 1 / z without distortion.
-  const double root = p.z() * p.z() - 4 * k * r2;
-  if (!(root >= 0)) return std::nullopt;
-  const double denominator = p.z() + std::sqrt(root);
-  if (!(denominator > 0)) return std::nullopt;
-  return point2(p.head<2>() * (2 / denominator));
-}
-
-inline std::optional<point2> project_eucm(double alpha, double beta, const Eigen::Vector3d& p) {
-  const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
-  const double w = alpha > 0.5 ? (1 - alpha) / alpha : alpha / (1 - alpha);
-  const double denominator = alpha * d + (1 - alpha) * p.z();
-  if (!(p.z() > -w * d) || !(denominator > 0)) return std::nullopt;
-  return point2(p.head<2>() / denominator);
-}
-
-inline std::optional<Eigen::Vector3d> unproject_eucm(double alpha, double beta, const point2& p) {
-  const double r2 = p.squaredNorm();
-  const double root = 1 - (2 * alpha - 1) * beta * r2;
-  if (!(root >= 0)) return std::nullopt;
-  const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(root) + 1 - alpha);
-  return Eigen::Vector3d(p.x(), p.y(), z).normalized();
-}
-
-/// Longitude to the right and latitude downwards over the whole image.
-inline std::optional<point2> project_sphere(double width, double height, const Eigen::Vector3d& p) {
-  if (p.squaredNorm() == 0) return std::nullopt;
-  const double longitude = std::atan2(p.x(), p.z());
-  const double latitude = std::atan2(p.y(), std::hypot(p.x(), p.z()));
-  return point2((longitude / (2 * std::numbers::pi) + 0.5) * width,
-                (latitude / std::numbers::pi + 0.5) * height);
-}
-
-inline Eigen::Vector3d unproject_sphere(double width, double height, const point2& pixel) {
-  const double longitude = 2 * std::numbers::pi * (pixel.x() / width - 0.5);
-  const double latitude = std::numbers::pi * (pixel.y() / height - 0.5);
-  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
-          std::cos(latitude) * std::cos(longitude)};
-}
-
-}  // namespace detail
-
-inline std::optional<Eigen::Vector2d> project(const camera& camera,
-                                              const Eigen::Vector3d& p_in_camera) {
-  const std::span<const double> k = detail::distortion_parameters(camera);
-  if (!p_in_camera.allFinite()) return std::nullopt;
-  std::optional<detail::point2> p;
-  switch (camera.model) {
-    case camera_model::equirectangular:
-      return detail::project_sphere(camera.parameters[0], camera.parameters[1], p_in_camera);
-    case camera_model::simple_division:
-    case camera_model::division:
-      p = detail::project_division(k[0], p_in_camera);
-      break;
-    case camera_model::eucm:
-      p = detail::project_eucm(k[0], k[1], p_in_camera);
-      break;
-    default:
-      p = detail::on_plane(detail::plane_of(camera.model), p_in_camera);
-      if (p) p = detail::distort(camera.model, k, *p);
-  }
-  if (!p) return std::nullopt;
-  return Eigen::Vector2d(camera.fx() * p->x() + camera.cx(), camera.fy() * p->y() + camera.cy());
-}
-
-inline std::optional<Eigen::Vector3d> unproject(const camera& camera,
-                                                const Eigen::Vector2d& pixel) {
-  const std::span<const double> k = detail::distortion_parameters(camera);
-  if (!pixel.allFinite()) return std::nullopt;
-  if (camera.model == camera_model::equirectangular)
-    return detail::unproject_sphere(camera.parameters[0], camera.parameters[1], pixel);
-  const detail::point2 p((pixel.x() - camera.cx()) / camera.fx(),
-                         (pixel.y() - camera.cy()) / camera.fy());
-  switch (camera.model) {
-    case camera_model::simple_division:
-    case camera_model::division:
-      return Eigen::Vector3d(p.x(), p.y(), 1 + k[0] * p.squaredNorm()).normalized();
-    case camera_model::eucm:
-      return detail::unproject_eucm(k[0], k[1], p);
-    default: {
-      const auto undistorted = detail::undistort(camera.model, k, p);
-      if (!undistorted) return std::nullopt;
-      return detail::off_plane(detail::plane_of(camera.model), *undistorted);
-    }
-  }
-}
-
-}  // namespace aib::math
-
 // aib/search/triangle_tree.hpp
 
 namespace aib::search {
@@ -15226,6 +17157,7 @@ inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
 // aib/mesh/distances.hpp
 
 namespace aib::mesh {
+inline namespace AIB_ISA {
 
 /// The finite triangles of a mesh under a search tree, for many questions.
 class surface_index {
@@ -15355,6 +17287,162 @@ inline cloud::comparison compare(const cloud::cloud& estimate,
                       options.tau);
 }
 
+}  // namespace AIB_ISA
+}  // namespace aib::mesh
+
+// aib/mesh/edges.hpp
+
+namespace aib::mesh {
+
+/// For each triangle the same with corners at one position under one number, so that a mesh whose
+/// vertices are repeated (STL, textured OBJ) holds together.
+[[nodiscard]] inline std::vector<triangle> welded(const mesh& m) {
+  std::vector<std::uint32_t> order(m.vertices.size());
+  for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<std::uint32_t>(v);
+  const auto coordinates = [&](std::uint32_t v) {
+    const Eigen::Vector3f& p = m.vertices[v];
+    return std::array{p.x() + 0.0f, p.y() + 0.0f, p.z() + 0.0f};  // -0 as 0
+  };
+  std::erase_if(order, [&](std::uint32_t v) { return !m.vertices[v].allFinite(); });
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto at_a = coordinates(a), at_b = coordinates(b);
+    return at_a != at_b ? at_a < at_b : a < b;
+  });
+  std::vector<std::uint32_t> first(m.vertices.size());
+  for (std::size_t v = 0; v < first.size(); ++v) first[v] = static_cast<std::uint32_t>(v);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (coordinates(order[i]) == coordinates(order[i - 1])) first[order[i]] = first[order[i - 1]];
+  }
+  std::vector<triangle> triangles;
+  triangles.reserve(m.triangles.size());
+  for (const auto& [a, b, c] : m.triangles) triangles.push_back({first[a], first[b], first[c]});
+  return triangles;
+}
+
+/// Directed edges that have no twin: 0 for a watertight mesh, in which every edge is passed as
+/// often one way as the other. Triangles with two corners at one place play no part.
+[[nodiscard]] inline std::size_t n_open_edges(const mesh& m) {
+  std::vector<std::array<std::uint32_t, 3>> edges;  // both ends ascending, then the direction
+  for (const triangle& t : welded(m)) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), a < b});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::size_t open = 0;
+  for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+    std::ptrdiff_t balance = 0;
+    for (; last < edges.size() && edges[last][0] == edges[first][0] &&
+           edges[last][1] == edges[first][1];
+         ++last) {
+      balance += edges[last][2] == 1 ? 1 : -1;
+    }
+    open += static_cast<std::size_t>(balance < 0 ? -balance : balance);
+  }
+  return open;
+}
+
+/// Whether the mesh encloses a volume: it has triangles, and every edge joins them pairwise with
+/// agreeing sides.
+[[nodiscard]] inline bool is_watertight(const mesh& m) {
+  return !m.empty() && n_open_edges(m) == 0;
+}
+
+}  // namespace aib::mesh
+
+// aib/mesh/face_scores.hpp
+
+namespace aib::mesh {
+
+/// What a reconstruction got right, face by face of the reference. NaN where a face has no point.
+struct face_scores {
+  std::vector<float> accuracy;      ///< mean distance of the estimated points nearest to the face
+  std::vector<float> completeness;  ///< mean distance from samples of the face to the estimate
+  std::vector<float> recall;        ///< share of these samples strictly below tau
+  std::vector<std::size_t> n_estimate;
+  std::vector<std::size_t> n_samples;
+};
+
+namespace detail {
+
+/// Means of values by face.
+class face_means {
+ public:
+  explicit face_means(std::size_t n_faces) : sum_(n_faces), n_(n_faces) {}
+
+  void add(std::uint32_t face, double value) {
+    if (face >= n_.size() || !std::isfinite(value)) return;
+    sum_[face] += value;
+    ++n_[face];
+  }
+  [[nodiscard]] std::vector<float> values() const {
+    std::vector<float> mean;
+    for (std::size_t f = 0; f < n_.size(); ++f) {
+      mean.push_back(n_[f] == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                : static_cast<float>(sum_[f] / static_cast<double>(n_[f])));
+    }
+    return mean;
+  }
+  [[nodiscard]] const std::vector<std::size_t>& counts() const { return n_; }
+
+ private:
+  std::vector<double> sum_;
+  std::vector<std::size_t> n_;
+};
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Scores of each face, to be written as scalars and colours of the mesh.
+///
+/// samples   points on the mesh (sample::mesh); each belongs to the face nearest to it
+/// tau       threshold of recall
+///
+/// A point farther than max_distance counts for no face with `drop`, as that far with `clamp`.
+/// Throws undefined_error if the estimate or the samples have no finite point or the mesh has no
+/// finite triangle.
+[[nodiscard]] inline face_scores scores_by_face(const cloud::cloud& estimate,
+                                                const mesh& reference,
+                                                const cloud::cloud& samples,
+                                                double tau,
+                                                const cloud::distance_options& options = {}) {
+  const surface_index index(reference, options.threads, options.control);
+  auto near = closest(estimate, index, options.threads, options.control);
+  const cloud::distances to_surface(std::move(near.distance), options);
+  const auto sampled = closest(samples, index, options.threads, options.control);
+  const cloud::distances to_estimate(samples, estimate, options);
+  const std::size_t n = reference.triangles.size();
+  detail::face_means accuracy(n), completeness(n), recall(n);
+  for (std::size_t i = 0; i < to_surface.size(); ++i) accuracy.add(near.triangle[i], to_surface[i]);
+  for (std::size_t i = 0; i < to_estimate.size(); ++i) {
+    completeness.add(sampled.triangle[i], to_estimate[i]);
+    if (!std::isnan(to_estimate[i])) recall.add(sampled.triangle[i], to_estimate[i] < tau);
+  }
+  return {accuracy.values(), completeness.values(), recall.values(), accuracy.counts(),
+          recall.counts()};
+}
+
+/// The label of the face nearest to each point; 0 for a point that is not finite.
+/// Throws argument_error if the mesh has no labels.
+[[nodiscard]] inline std::vector<std::uint32_t> nearest_labels(const cloud::cloud& points,
+                                                               const mesh& surface,
+                                                               unsigned threads = 0,
+                                                               const control& control = {}) {
+  if (surface.labels.size() != surface.triangles.size()) {
+    throw argument_error("mesh::nearest_labels: a mesh with labels expected");
+  }
+  const auto near = closest(points, surface_index(surface, threads, control), threads, control);
+  std::vector<std::uint32_t> labels(points.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (near.triangle[i] < surface.labels.size()) labels[i] = surface.labels[near.triangle[i]];
+  }
+  return labels;
+}
+
+}  // namespace AIB_ISA
 }  // namespace aib::mesh
 
 // aib/mesh/surface.hpp
@@ -15383,6 +17471,86 @@ namespace aib::mesh {
   return total;
 }
 
+}  // namespace aib::mesh
+
+// aib/mesh/offsets.hpp
+
+namespace aib::mesh {
+
+/// The outward direction at each part of a closed surface: a face's normal, at an edge the sum of
+/// those of its faces, at a corner the sum weighted by angle. Its side of a nearest point is the
+/// side of the surface.
+/// Source: Bærentzen and Aanæs, IEEE TVCG 2005, theorem 1.
+class pseudonormals {
+ public:
+  explicit pseudonormals(const mesh& m) : triangles_(welded(m)), corner_(m.vertices.size()) {
+    std::fill(corner_.begin(), corner_.end(), Eigen::Vector3d(0, 0, 0));
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto at = corners(m, t);
+      const Eigen::Vector3d ab = at[1] - at[0], ac = at[2] - at[0];
+      const Eigen::Vector3d normal = ab.cross(ac).normalized();
+      face_.push_back(normal.allFinite() ? normal : Eigen::Vector3d(0, 0, 0));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3d next = at[(k + 1) % 3] - at[k], last = at[(k + 2) % 3] - at[k];
+        const double angle = std::atan2(next.cross(last).norm(), next.dot(last));
+        if (std::isfinite(angle)) corner_[triangles_[t][k]] += angle * face_[t];
+        edge_.try_emplace(edge_of(t, k), 0, 0, 0).first->second += face_[t];
+      }
+    }
+  }
+
+  [[nodiscard]] const Eigen::Vector3d& at(std::size_t t, const search::surface_point& p) const {
+    const auto k = static_cast<std::size_t>(p.k);
+    if (p.part == search::triangle_part::face) return face_[t];
+    if (p.part == search::triangle_part::edge) return edge_.at(edge_of(t, k));
+    return corner_[triangles_[t][k]];
+  }
+
+ private:
+  using edge = std::pair<std::uint32_t, std::uint32_t>;
+
+  [[nodiscard]] edge edge_of(std::size_t t, std::size_t k) const {
+    return std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3]);
+  }
+
+  std::vector<triangle> triangles_;
+  std::vector<Eigen::Vector3d> face_, corner_;
+  std::map<edge, Eigen::Vector3d> edge_;
+};
+
+inline namespace AIB_ISA {
+
+/// Signed distance from each point to a closed surface: positive outside, negative inside, exact.
+///
+/// Faces count as seen from outside counter-clockwise. A mesh that is not watertight has no inside:
+/// throws argument_error with the number of its open edges. Throws undefined_error if the cloud has
+/// no finite point or the mesh no finite triangle.
+[[nodiscard]] inline cloud::offsets offsets(const cloud::cloud& points,
+                                            const mesh& surface,
+                                            unsigned threads = 0,
+                                            const control& control = {}) {
+  if (const std::size_t open = n_open_edges(surface); open > 0 || surface.empty()) {
+    throw argument_error(
+        message("mesh::offsets: a watertight mesh expected, found ", open, " open edges"));
+  }
+  const surface_index index(surface, threads, control);
+  const pseudonormals outward(surface);
+  auto found = closest(points, index, threads, control);
+  for_each_chunk(points.size(), 4096, threads, control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const std::uint32_t t = found.triangle[i];
+      if (t == ~std::uint32_t{0}) continue;
+      const Eigen::Vector3d p = points.position(i) - surface.origin;
+      const auto nearest = search::nearest_on_triangle(p, corners(surface, t));
+      if ((p - nearest.position).dot(outward.at(t, nearest)) < 0) {
+        found.distance[i] = -found.distance[i];
+      }
+    }
+  });
+  return cloud::offsets(std::move(found.distance));
+}
+
+}  // namespace AIB_ISA
 }  // namespace aib::mesh
 
 // aib/mesh/transform.hpp
@@ -17822,6 +19990,54 @@ inline unprojected unproject(const depth::depth_map& map,
 
 }  // namespace aib::sample
 
+// aib/sample/point_map.hpp
+
+namespace aib::sample {
+
+/// The points of a point map, as pi3 and DUSt3R predict them, in world frame.
+///
+/// xyz                height * width points in the frame of the camera, row by row; one is valid
+///                    where its z is a valid depth and x and y are finite
+/// world_from_camera  the identity for maps in world frame, whose z is above 0 then
+/// options            confidence, min_confidence, rule and stride; the others have no meaning
+///
+/// Throws argument_error as unproject does, and where the numbers are not that many.
+[[nodiscard]] inline unprojected place_point_map(std::span<const float> xyz,
+                                                 std::size_t width,
+                                                 std::size_t height,
+                                                 const math::rigid3& world_from_camera,
+                                                 const unproject_options& options = {}) {
+  if (xyz.size() != width * height * 3) {
+    throw argument_error(message("sample::place_point_map: ", width, "x", height,
+                                 " points expected, found ", xyz.size(), " numbers"));
+  }
+  depth::depth_map z{raster::image<float>(width, height)};
+  for (std::size_t k = 0; k < width * height; ++k) z.values.data()[k] = xyz[3 * k + 2];
+  detail::check(z, world_from_camera, options);
+  std::optional<double> threshold;
+  if (options.confidence.data) threshold = detail::confidence_threshold(z, options);
+  const Eigen::Vector3d& centre = world_from_camera.translation;
+  unprojected made{};
+  made.points.origin = cloud::natural_origin(centre, centre);
+  for (std::size_t y = 0; y < height; y += options.stride) {
+    for (std::size_t x = 0; x < width; x += options.stride) {
+      const float* at = xyz.data() + 3 * (y * width + x);
+      const Eigen::Vector3d p_in_camera = Eigen::Map<const Eigen::Vector3f>(at).cast<double>();
+      if (!depth::is_valid(at[2]) || !p_in_camera.allFinite()) continue;
+      ++made.n_valid;
+      if (threshold && !(options.confidence(x, y) > *threshold)) {
+        ++made.n_unsure;
+        continue;
+      }
+      const Eigen::Vector3d p = world_from_camera * p_in_camera - made.points.origin;
+      made.points.points.push_back(p.cast<float>());
+    }
+  }
+  return made;
+}
+
+}  // namespace aib::sample
+
 // aib/sample/voxel.hpp
 
 namespace aib::sample {
@@ -18049,66 +20265,5 @@ struct interval {
           .high = quantile<double>(means, 1 - tail),
           .deviation = of_means.deviation()};
 }
-
-}  // namespace aib::stats
-
-// aib/stats/histogram.hpp
-
-namespace aib::stats {
-
-/// Counts of values in equal bins on [low, high), mergeable. Values outside are counted, not
-/// dropped.
-class histogram {
- public:
-  /// Throws argument_error unless low < high and bins > 0.
-  histogram(double low, double high, std::size_t bins) : low_(low), high_(high), counts_(bins) {
-    if (!(low < high) || bins == 0) {
-      throw argument_error(message("stats::histogram: low < high and bins > 0 expected, found ",
-                                   low, ", ", high, ", ", bins));
-    }
-  }
-
-  /// A NaN counts as above.
-  void add(double value) {
-    if (value < low_) {
-      ++below_;
-    } else if (value < high_) {
-      const double place = (value - low_) / (high_ - low_) * static_cast<double>(counts_.size());
-      ++counts_[std::min(static_cast<std::size_t>(place), counts_.size() - 1)];
-    } else {
-      ++above_;
-    }
-  }
-
-  /// Throws argument_error if the bins differ.
-  histogram& operator+=(const histogram& other) {
-    if (other.low_ != low_ || other.high_ != high_ || other.counts_.size() != counts_.size()) {
-      throw argument_error("stats::histogram: the bins of merged histograms differ");
-    }
-    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
-    below_ += other.below_;
-    above_ += other.above_;
-    return *this;
-  }
-
-  [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
-  [[nodiscard]] std::uint64_t below() const { return below_; }
-  [[nodiscard]] std::uint64_t above() const { return above_; }
-  [[nodiscard]] std::uint64_t total() const {
-    std::uint64_t n = below_ + above_;
-    for (const std::uint64_t c : counts_) n += c;
-    return n;
-  }
-  /// Lower edge of bin i; edge(bins) is the upper end.
-  [[nodiscard]] double edge(std::size_t i) const {
-    return low_ + (high_ - low_) * static_cast<double>(i) / static_cast<double>(counts_.size());
-  }
-
- private:
-  double low_, high_;
-  std::vector<std::uint64_t> counts_;
-  std::uint64_t below_ = 0;
-  std::uint64_t above_ = 0;
-};
 
 }  // namespace aib::stats

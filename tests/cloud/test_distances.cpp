@@ -6,8 +6,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 using namespace aib;
@@ -114,4 +117,21 @@ TEST_CASE("ranges of foreign points become clouds") {
   CHECK(c.position(1) == Eigen::Vector3d(458075.25, 5429380.5, 162));
   CHECK(cloud::from_points(std::vector<Eigen::Vector3f>{{1, 2, 3}}).origin ==
         Eigen::Vector3d(0, 0, 0));
+}
+
+TEST_CASE("shares below many thresholds are those below each") {
+  const cloud::cloud from{.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}}};
+  const cloud::cloud to{.points = {{0, 0, 0}}};
+  const cloud::distances d(from, to);
+  const std::vector<double> tau{2, 0.5, 9, 1, 2};
+  CHECK(d.shares_below(tau) == std::vector<double>{0.5, 0.25, 1, 0.25, 0.5});
+  for (const double t : tau) CHECK(d.share_below(t) == d.shares_below(std::span(&t, 1))[0]);
+  const auto counts = d.histogram(4, 4);
+  CHECK(counts.counts() == std::vector<std::uint64_t>{1, 1, 1, 0});
+  CHECK(counts.above() == 1);
+}
+
+TEST_CASE("what searches is named after the instruction set, for units of different ones") {
+  const std::string name = typeid(cloud::distances).name();
+  CHECK(name.find(instruction_set) != std::string::npos);
 }

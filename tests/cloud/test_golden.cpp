@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/compare.hpp>
+#include <aib/cloud/eth3d.hpp>
 #include <aib/io/ply.hpp>
 #include <aib/sample/voxel.hpp>
 
@@ -92,6 +93,30 @@ TEST_CASE("clouds compare as Open3D, scipy, DA3 and CUT3R compare them") {
     }
     for (const auto& found : c.scores) check_scores(found, e["at_tau"]);
   }
+}
+
+TEST_CASE("ETH3D's scores are its tool's") {
+  if (!support::has_shared("ETH3D golden")) return;
+  int n = 0;
+  for (const golden_case& g : golden_cases()) {
+    if (!g.expected().contains("eth3d")) continue;
+    CAPTURE(g.name);
+    const auto& e = g.expected()["eth3d"];
+    const std::vector scans{cloud::laser_scan{g.reference, {0, 0, 0}}};
+    const auto found = cloud::eth3d(
+        g.estimate, scans,
+        {.tolerances = e["Tolerances"].get<std::vector<double>>(), .voxel = e["voxel_size"]});
+    for (std::size_t t = 0; t < found.scores.size(); ++t) {
+      CAPTURE(t);
+      const auto& s = found.scores[t];
+      CHECK(std::abs(s.completeness - e["Completenesses"][t].get<double>()) < 1e-6);
+      REQUIRE(s.accuracy.has_value());
+      CHECK(std::abs(*s.accuracy - e["Accuracies"][t].get<double>()) < 1e-6);
+      CHECK(std::abs(*s.f_score - e["F1-scores"][t].get<double>()) < 1e-6);
+    }
+    ++n;
+  }
+  CHECK(n >= 4);
 }
 
 TEST_CASE("voxels are Open3D's where the lattice is") {

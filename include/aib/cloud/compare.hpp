@@ -5,9 +5,11 @@
 #include <aib/cloud/cloud.hpp>
 #include <aib/cloud/distances.hpp>
 #include <aib/cloud/positions.hpp>
+#include <aib/core/isa.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -51,17 +53,19 @@ struct comparison {
   double reference_beyond;  ///< share of the reference not below max_distance
 };
 
-/// Distances in both directions, each cloud sorted and indexed once.
-struct two_way_distances {
-  distances to_reference;  ///< of the points of the estimate
-  distances to_estimate;   ///< of the points of the reference
-};
-
 namespace detail {
 
 inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
 
 }  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Distances in both directions, each cloud sorted and indexed once.
+struct two_way_distances {
+  distances to_reference;  ///< of the points of the estimate
+  distances to_estimate;   ///< of the points of the reference
+};
 
 /// Distances from the estimate to the reference and back.
 /// Throws undefined_error if either cloud has no finite point.
@@ -81,6 +85,20 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                     options),
           distances(detail::roots_in_place(r, search::nearest_squared(r_tree, e_tree, search)),
                     options)};
+}
+
+/// Precision, recall and F-score at thresholds, in their order: with many of them, a curve.
+[[nodiscard]] inline std::vector<threshold_scores> scores_at(const distances& to_reference,
+                                                             const distances& to_estimate,
+                                                             std::span<const double> tau) {
+  const auto precision = to_reference.shares_below(tau);
+  const auto recall = to_estimate.shares_below(tau);
+  std::vector<threshold_scores> scores;
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    scores.push_back(
+        {tau[i], precision[i], recall[i], detail::harmonic_mean(precision[i], recall[i])});
+  }
+  return scores;
 }
 
 /// The scores of distances in both directions, wherever they come from.
@@ -105,11 +123,7 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
                .n_dropped = to_reference.n_dropped() + to_estimate.n_dropped(),
                .estimate_beyond = to_reference.share_beyond(),
                .reference_beyond = to_estimate.share_beyond()};
-  for (const double t : tau) {
-    const double precision = to_reference.share_below(t);
-    const double recall = to_estimate.share_below(t);
-    c.scores.push_back({t, precision, recall, detail::harmonic_mean(precision, recall)});
-  }
+  c.scores = scores_at(to_reference, to_estimate, tau);
   return c;
 }
 
@@ -130,4 +144,5 @@ inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b /
   return score(both.to_reference, both.to_estimate, options.tau);
 }
 
+}  // namespace AIB_ISA
 }  // namespace aib::cloud

@@ -6,7 +6,9 @@
 #include <aib/cloud/positions.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
+#include <aib/core/isa.hpp>
 #include <aib/search/nearest.hpp>
+#include <aib/stats/histogram.hpp>
 #include <aib/stats/quantiles.hpp>
 
 #include <algorithm>
@@ -33,6 +35,8 @@ struct distance_options {
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
+
+inline namespace AIB_ISA {
 
 /// Distances from each point of a cloud to another thing, with their statistics.
 ///
@@ -68,9 +72,16 @@ class distances {
   /// q in [0, 1], interpolated linearly.
   [[nodiscard]] double quantile(double q) const;
 
+  /// Counts of the distances in equal bins on [0, high). Points beyond the maximum count as above
+  /// it with `drop`, as the maximum with `clamp`; those that are not finite are left out.
+  [[nodiscard]] stats::histogram histogram(double high, std::size_t bins) const;
+
   /// Share of the finite points whose distance is strictly below tau. Points beyond the maximum are
   /// in the denominator. Throws argument_error if tau is above the maximum.
   [[nodiscard]] double share_below(double tau) const;
+
+  /// The same for several thresholds, in their order, from one pass.
+  [[nodiscard]] std::vector<double> shares_below(std::span<const double> tau) const;
 
  private:
   void apply_maximum();
@@ -86,6 +97,8 @@ class distances {
   double sum_of_squares_ = 0;
   double max_ = 0;
 };
+
+}  // namespace AIB_ISA
 
 namespace detail {
 
@@ -129,6 +142,8 @@ inline search::nearest_options search_options(const distance_options& options) {
 }
 
 }  // namespace detail
+
+inline namespace AIB_ISA {
 
 inline distances::distances(const cloud& from, const cloud& to, const distance_options& options)
     : options_(options) {
@@ -238,21 +253,55 @@ inline double distances::quantile(double q) const {
   return stats::quantile_in_place<float>(counted, q);
 }
 
-inline double distances::share_below(double tau) const {
-  if (n_finite() == 0) demand_values("share");
-  if (options_.max_distance && tau > *options_.max_distance) {
-    throw argument_error(
-        message("cloud::distances: tau ", tau, " is above max_distance ", *options_.max_distance));
+inline stats::histogram distances::histogram(double high, std::size_t bins) const {
+  stats::histogram counts(0, high, bins);
+  for (const float d : values_) {
+    if (!std::isnan(d)) counts.add(d);
   }
-  const auto count_chunk = [&](const chunk& c) {
-    std::size_t n = 0;
-    for (std::size_t i = c.begin; i < c.end; ++i) n += static_cast<double>(values_[i]) < tau;
-    return n;
-  };
-  const std::size_t below =
-      reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {}, std::size_t{0},
-                    count_chunk, [](std::size_t a, std::size_t b) { return a + b; });
-  return static_cast<double>(below) / static_cast<double>(n_finite());
+  return counts;
 }
 
+inline std::vector<double> distances::shares_below(std::span<const double> tau) const {
+  if (n_finite() == 0) demand_values("share");
+  for (const double t : tau) {
+    if (options_.max_distance && t > *options_.max_distance) {
+      throw argument_error(
+          message("cloud::distances: tau ", t, " is above max_distance ", *options_.max_distance));
+    }
+  }
+  std::vector<double> ascending(tau.begin(), tau.end());
+  std::sort(ascending.begin(), ascending.end());
+  const auto first_above = [&](double d) {
+    const auto above = std::upper_bound(ascending.begin(), ascending.end(), d);
+    return static_cast<std::size_t>(above - ascending.begin());
+  };
+  using counts = std::vector<std::size_t>;  // of values whose first threshold above is this one
+  const auto count_chunk = [&](const chunk& c) {
+    counts n(tau.size() + 1);
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      if (!std::isnan(values_[i])) ++n[first_above(values_[i])];
+    }
+    return n;
+  };
+  const auto add = [](counts a, const counts& b) {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
+    return a;
+  };
+  counts below = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                               counts(tau.size() + 1), count_chunk, add);
+  for (std::size_t k = 1; k < below.size(); ++k) below[k] += below[k - 1];
+  std::vector<double> share;
+  for (const double t : tau) {
+    const auto place = std::lower_bound(ascending.begin(), ascending.end(), t) - ascending.begin();
+    share.push_back(static_cast<double>(below[static_cast<std::size_t>(place)]) /
+                    static_cast<double>(n_finite()));
+  }
+  return share;
+}
+
+inline double distances::share_below(double tau) const {
+  return shares_below(std::span(&tau, 1)).front();
+}
+
+}  // namespace AIB_ISA
 }  // namespace aib::cloud

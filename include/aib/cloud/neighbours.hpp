@@ -30,6 +30,8 @@ class neighbours {
   neighbours(const neighbours&) = delete;
   neighbours& operator=(const neighbours&) = delete;
 
+  [[nodiscard]] std::size_t size() const { return points_.position.size(); }
+
   /// The k nearest points (fewer where the cloud has no more), nearest first; a point of the cloud
   /// finds itself first.
   [[nodiscard]] std::vector<neighbour> nearest(const Eigen::Vector3d& p, std::size_t k) const {
@@ -46,26 +48,35 @@ class neighbours {
     return found;
   }
 
+  /// Calls `visit(index)` for each point nearer than `radius`, in no order.
+  template <class Visit>
+  void for_each_within(const Eigen::Vector3d& p, double radius, Visit&& visit) const {
+    const Eigen::Vector3d local = p - points_.origin;
+    visitor<Visit> inside{radius * radius, points_.source, visit};
+    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
+  }
+
   /// How many points lie nearer than `radius`.
   [[nodiscard]] std::size_t count_within(const Eigen::Vector3d& p, double radius) const {
-    const Eigen::Vector3d local = p - points_.origin;
-    counter inside{radius * radius};
-    (void)tree_.radiusSearchCustomCallback(local.data(), inside);
-    return inside.n;
+    std::size_t n = 0;
+    for_each_within(p, radius, [&](std::size_t) { ++n; });
+    return n;
   }
 
  private:
   /// A result set, which is the same in every version of nanoflann.
-  struct counter {
+  template <class Visit>
+  struct visitor {
     double squared_radius;
-    std::size_t n = 0;
+    const std::vector<std::size_t>& source;
+    Visit& visit;
 
-    bool addPoint(double squared, std::size_t) {
-      n += squared < squared_radius ? 1 : 0;
+    bool addPoint(double squared, std::size_t place) {
+      if (squared < squared_radius) visit(source[place]);
       return true;
     }
     [[nodiscard]] double worstDist() const { return squared_radius; }
-    [[nodiscard]] std::size_t size() const { return n; }
+    [[nodiscard]] std::size_t size() const { return 0; }
     [[nodiscard]] bool full() const { return true; }
   };
 

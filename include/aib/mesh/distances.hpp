@@ -8,6 +8,7 @@
 #include <aib/cloud/positions.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
+#include <aib/core/isa.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/search/curve.hpp>
 #include <aib/search/triangle_tree.hpp>
@@ -24,6 +25,7 @@
 #include <vector>
 
 namespace aib::mesh {
+inline namespace AIB_ISA {
 
 /// The finite triangles of a mesh under a search tree, for many questions.
 class surface_index {
@@ -153,4 +155,5 @@ inline cloud::comparison compare(const cloud::cloud& estimate,
                       options.tau);
 }
 
+}  // namespace AIB_ISA
 }  // namespace aib::mesh

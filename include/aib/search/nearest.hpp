@@ -18,7 +18,6 @@
 #include <vector>
 
 namespace aib::search {
-inline namespace AIB_ISA {
 
 struct nearest_options {
   /// Squared distances are searched below this bound only; a query without such a neighbour gets
@@ -27,6 +26,8 @@ struct nearest_options {
   unsigned threads = 0;  ///< 0: all
   aib::control control = {};
 };
+
+inline namespace AIB_ISA {
 
 /// Squared distance from each point of `queries` to its nearest neighbour in `targets`, in the
 /// order in which the points of `queries` were given.
