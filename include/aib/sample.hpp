@@ -5,6 +5,9 @@
 /// @file
 /// Clouds from meshes, depth maps and voxels.
 
+#include <aib/sample/eliminate.hpp>
 #include <aib/sample/mesh.hpp>
+#include <aib/sample/point_map.hpp>
+#include <aib/sample/thin.hpp>
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>

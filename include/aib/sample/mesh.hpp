@@ -3,30 +3,42 @@
 #pragma once
 
 #include <aib/cloud/cloud.hpp>
+#include <aib/cloud/distances.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/random.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/surface.hpp>
+#include <aib/sample/eliminate.hpp>
+#include <aib/sample/thin.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 namespace aib::sample {
 
+/// How points are spread.
+enum class spread {
+  uniform,  ///< at random
+  poisson,  ///< at random but evenly: no two very near, no large hole (Poisson disk)
+};
+
 /// How many points; exactly one of the three is given.
 struct mesh_options {
-  std::optional<std::size_t> n = {};    ///< this many
-  std::optional<double> spacing = {};   ///< one a square of this side, in the unit of the mesh
+  std::optional<std::size_t> n = {};   ///< this many
+  std::optional<double> spacing = {};  ///< uniform: one a square of this side; poisson: none nearer
   std::optional<double> per_area = {};  ///< this many a square unit
+  spread method = spread::uniform;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: all
 };
@@ -36,8 +48,8 @@ struct mesh_samples {
   cloud::cloud points;  ///< with face normals, and labels where the mesh has them
   double area;          ///< of the mesh, square units
   double density;       ///< points a square unit
-  /// Mean distance from a point of the surface to the nearest of randomly placed samples,
-  /// 0.5 / sqrt(density): below it an accuracy against these samples says nothing.
+  /// Mean distance from a point of the surface to the nearest sample: below it an accuracy against
+  /// these samples says nothing. Uniform: 0.5 / sqrt(density). Poisson: measured.
   double floor;
 };
 
@@ -46,6 +58,10 @@ struct mesh_samples {
 
 /// Points on a mesh, uniform by area. A triangle of area a gets n a / area points, rounded up or
 /// down by one random offset for all; within it they are independent.
+///
+/// With `poisson` these points are candidates: five times n, of which the most crowded are taken
+/// away (sample::eliminate), or, for a spacing, so many that few holes are left, of which none
+/// nearer than the spacing to another is kept (sample::thin).
 ///
 /// Points lie in the order of their triangles and have the triangle's normal and label.
 /// The same for any number of threads.
@@ -120,24 +136,27 @@ inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
 
 }  // namespace detail
 
-inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options) {
+namespace detail {
+
+/// Points at random, uniform by area.
+inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_options& options) {
   const double area = aib::mesh::area(surface);
   if (!(area > 0)) {
     throw undefined_error(
         message("sample::mesh: the mesh has no area (", surface.triangles.size(), " triangles)"));
   }
-  const std::size_t n = detail::sample_count(options, area);
-  const double offset = detail::uniform(options.seed, 0);
-  const auto starts = detail::sample_starts(surface, area, n, offset);
-  cloud::cloud points = detail::room_for(surface, n);
+  const std::size_t n = sample_count(options, area);
+  const double offset = uniform(options.seed, 0);
+  const auto starts = sample_starts(surface, area, n, offset);
+  cloud::cloud points = room_for(surface, n);
   for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
     for (std::size_t t = c.begin; t < c.end; ++t) {
       if (starts[t] == starts[t + 1]) continue;
       const auto corner = aib::mesh::corners(surface, t);
-      const Eigen::Vector3f normal = detail::unit_normal(corner);
+      const Eigen::Vector3f normal = unit_normal(corner);
       for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-        const Eigen::Vector3d p = detail::point_in(corner, detail::uniform(options.seed, 2 * i + 1),
-                                                   detail::uniform(options.seed, 2 * i + 2));
+        const Eigen::Vector3d p =
+            point_in(corner, uniform(options.seed, 2 * i + 1), uniform(options.seed, 2 * i + 2));
         points.points[i] = p.cast<float>();
         points.normals[i] = normal;
         if (!points.labels.empty()) points.labels[i] = surface.labels[t];
@@ -146,6 +165,44 @@ inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& opt
   });
   const double density = static_cast<double>(n) / area;
   return {std::move(points), area, density, sampling_floor(density)};
+}
+
+/// Candidates for a Poisson-disk sample: for a spacing, ten a disk of half of it.
+inline mesh_samples candidates(const aib::mesh::mesh& surface, mesh_options options) {
+  if (options.spacing) {
+    options.per_area = 10 / (std::numbers::pi / 4 * *options.spacing * *options.spacing);
+    options.spacing.reset();
+  } else {
+    const double area = aib::mesh::area(surface);
+    options.n = 5 * (area > 0 ? sample_count(options, area) : 1);
+    options.per_area.reset();
+  }
+  return uniform_samples(surface, options);
+}
+
+inline mesh_samples poisson_samples(const aib::mesh::mesh& surface, const mesh_options& options) {
+  if (options.spacing && !(*options.spacing > 0)) {
+    throw argument_error("sample::mesh: n, spacing or per_area must be positive");
+  }
+  mesh_samples samples = candidates(surface, options);
+  const cloud::cloud all = std::move(samples.points);
+  samples.points =
+      options.spacing
+          ? thin(all, {.spacing = *options.spacing, .seed = options.seed})
+          : eliminate(all, {.n = all.size() / 5, .area = samples.area, .threads = options.threads});
+  samples.density = static_cast<double>(samples.points.size()) / samples.area;
+  const cloud::distances apart(all, samples.points, {.threads = options.threads});
+  // The kept points are candidates too, at distance 0.
+  samples.floor = apart.mean() * static_cast<double>(all.size()) /
+                  static_cast<double>(all.size() - std::min(all.size() - 1, samples.points.size()));
+  return samples;
+}
+
+}  // namespace detail
+
+inline mesh_samples mesh(const aib::mesh::mesh& surface, const mesh_options& options) {
+  return options.method == spread::poisson ? detail::poisson_samples(surface, options)
+                                           : detail::uniform_samples(surface, options);
 }
 
 }  // namespace aib::sample
