@@ -19,6 +19,7 @@
 #include <aib/io/colmap_write.hpp>
 #include <aib/io/da3_streaming.hpp>
 #include <aib/io/depth.hpp>
+#include <aib/io/depth_frame.hpp>
 #include <aib/io/dmap.hpp>
 #include <aib/io/euroc.hpp>
 #include <aib/io/exr_header.hpp>
@@ -28,6 +29,7 @@
 #include <aib/io/file_kind.hpp>
 #include <aib/io/fingerprint.hpp>
 #include <aib/io/float_pixels.hpp>
+#include <aib/io/frame_stack.hpp>
 #include <aib/io/half.hpp>
 #include <aib/io/image.hpp>
 #include <aib/io/kitti.hpp>

@@ -1899,6 +1899,8 @@ inline icp_result icp(const cloud::cloud& estimate,
 /// can be linked together.
 #if defined(AIB_PLAIN)
 #define AIB_ISA plain
+#elif defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define AIB_ISA avx512
 #elif defined(__AVX2__)
 #define AIB_ISA avx2
 #elif defined(__SSE2__)
@@ -1914,7 +1916,7 @@ inline namespace AIB_ISA {}
 #define AIB_ISA_TEXT_(name) #name
 #define AIB_ISA_TEXT(name) AIB_ISA_TEXT_(name)
 
-/// "avx2", "sse2" or "plain".
+/// "avx512", "avx2", "sse2" or "plain".
 inline constexpr const char* instruction_set = AIB_ISA_TEXT(AIB_ISA);
 
 #undef AIB_ISA_TEXT
@@ -4122,6 +4124,36 @@ struct polygon_volume {
       if (a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u]) < p[u]) inside = !inside;
     }
     return inside;
+  }
+};
+
+/// What lies on the positive side of a plane, the plane itself left out.
+struct half_space {
+  Eigen::Vector4d plane = {0, 0, 1, 0};  ///< a, b, c, d of a x + b y + c z + d > 0
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    return plane.head<3>().dot(p) + plane[3] > 0;
+  }
+};
+
+/// Cells of which some are in: the observability mask of the DTU benchmark. Cell (i, j, k) has its
+/// centre, not its corner, at low + resolution (i, j, k); what lies on a border falls to the even
+/// cell.
+struct occupancy_grid {
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();
+  double resolution = 1;
+  std::array<std::size_t, 3> size = {};
+  std::vector<std::uint8_t> cells = {};  ///< not 0 is in; k runs fastest, then j
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    std::size_t index = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      const double place = std::nearbyint((p[a] - low[a]) / resolution);
+      if (!(place >= 0 && place < static_cast<double>(size[axis]))) return false;
+      index = index * size[axis] + static_cast<std::size_t>(place);
+    }
+    return cells[index] != 0;
   }
 };
 
@@ -17665,81 +17697,83 @@ class angle_bins {
   std::vector<double> edges_deg_;
 };
 
-/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root, an
-/// arc function or a search: the leading bits of the key choose a cell, which holds at most one
-/// edge. Where a key is too near to an edge for its rounding, or a cell holds several edges, the
-/// table says so, and the caller calculates the angle.
+/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root or an
+/// arc function. The leading bits of the key choose a cell. Most cells lie within one bin; the
+/// others name their first edge, and the key is compared. Where it is too near to an edge for its
+/// rounding, the table does not know, and the caller calculates the angle.
 class key_table {
  public:
-  struct cell {
-    double edge;           ///< key; infinite: no edge here; NaN: ask the angle
-    std::uint32_t bin[2];  ///< of keys above, of keys below the edge: indexed by a sign bit
-  };
-
-  /// Cells of a table.
-  static constexpr std::size_t size() { return cell_of(1) + 1; }
+  /// Added to the number of an edge in place of a bin.
+  static constexpr std::uint32_t edge = 1u << 30;
 
   /// Keys nearer to an edge than this are not trusted: tens of roundings of a key in [0, 1].
   static constexpr double doubt = 1e-14;
 
-  /// Cell of a key.
+  /// Cell of a key. All keys below the lowest share one.
   static constexpr std::size_t cell_of(double key) {
     return (std::bit_cast<std::uint64_t>(key > lowest ? key : lowest) >> shift) - first;
   }
 
-  /// keys   keys of the edges, in any order
-  /// bin    bin of a key, std::size_t(double)
+  /// Cells of a table.
+  static constexpr std::size_t size() { return cell_of(1) + 1; }
+
+  /// keys   of the edges, in any order
+  /// bin    bin of a key, std::size_t(double); below `edge`
   template <class BinOfKey>
-  key_table(std::vector<double> keys, BinOfKey&& bin) {
-    std::sort(keys.begin(), keys.end());
-    cells_.reserve(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double low = i == 0 ? 0 : lower_end(i);
-      const double high = std::min(1.0, lower_end(i + 1));
-      const auto from = std::lower_bound(keys.begin(), keys.end(), low - doubt);
-      const auto to = std::upper_bound(keys.begin(), keys.end(), high + doubt);
-      cells_.push_back(from == to ? without_edge(bin((low + high) / 2))
-                                  : with_edges(low, *from, *(to - 1), high, bin));
+  key_table(std::vector<double> keys, BinOfKey&& bin) : edges_(std::move(keys)), cells_(size()) {
+    std::sort(edges_.begin(), edges_.end());
+    for (std::size_t k = 0; k <= edges_.size(); ++k) {
+      const double low = k == 0 ? 0 : edges_[k - 1], high = k == edges_.size() ? 1 : edges_[k];
+      bins_.push_back(static_cast<std::uint32_t>(bin((low + high) / 2)));
+      fill(low, high, bins_.back());
     }
+    for (std::size_t k = edges_.size(); k-- > 0;)
+      fill(edges_[k] - doubt, edges_[k] + doubt, edge + static_cast<std::uint32_t>(k));
   }
 
-  [[nodiscard]] const std::vector<cell>& cells() const { return cells_; }
+  /// One a cell: the bin of all its keys, or `edge` and its first edge.
+  [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
+
+  /// The bin of a key; nothing where an edge is too near.
+  [[nodiscard]] std::optional<std::uint32_t> find(double key) const {
+    const std::uint32_t cell = cells_[cell_of(key)];
+    if (cell < edge) return cell;
+    std::size_t k = cell - edge;
+    while (k < edges_.size() && key > edges_[k] + doubt) ++k;
+    if (k < edges_.size() && key >= edges_[k] - doubt) return std::nullopt;
+    return bins_[k];
+  }
 
  private:
-  static constexpr double lowest = 0x1p-20;
-  static constexpr int shift = 46;  // leaves 6 of 52 fraction bits: 64 cells an octave
+  static constexpr double lowest = 0x1p-14;
+  static constexpr int shift = 43;  // leaves 9 of 52 fraction bits: 512 cells an octave
   static constexpr std::uint64_t first = std::bit_cast<std::uint64_t>(lowest) >> shift;
 
-  static double lower_end(std::size_t i) { return std::bit_cast<double>((first + i) << shift); }
-
-  static cell without_edge(std::size_t bin) {
-    const auto b = static_cast<std::uint32_t>(bin);
-    return {std::numeric_limits<double>::infinity(), {b, b}};
+  void fill(double low, double high, std::uint32_t value) {
+    const auto cell = [&](double key) {
+      return cells_.begin() + static_cast<std::ptrdiff_t>(cell_of(std::min(key, 1.0)));
+    };
+    std::fill(cell(low), cell(high) + 1, value);
   }
 
-  template <class BinOfKey>
-  static cell with_edges(double low, double edge, double last, double high, BinOfKey& bin) {
-    if (last - edge > doubt / 4) return {std::numeric_limits<double>::quiet_NaN(), {0, 0}};
-    return {edge,
-            {static_cast<std::uint32_t>(bin(std::min(1.0, (edge + high) / 2))),
-             static_cast<std::uint32_t>(bin(std::max(0.0, (low + edge) / 2)))}};
-  }
-
-  std::vector<cell> cells_;
+  std::vector<double> edges_;
+  std::vector<std::uint32_t> bins_;  // below the first edge, between two, above the last
+  std::vector<std::uint32_t> cells_;
 };
 
-/// Key of a rotation error: sin^2 of half the angle.
-[[nodiscard]] inline key_table rotation_table(const angle_bins& bins) {
+/// Table of rotation errors; their key is sin^2 of half the angle. A bin counts `stride`.
+[[nodiscard]] inline key_table rotation_table(const angle_bins& bins, std::size_t stride = 1) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {
     const double s = std::sin(math::radians(e) / 2);
     if (e <= 180) keys.push_back(s * s);
   }
-  return {std::move(keys),
-          [&](double key) { return bins.find(math::degrees(2 * std::asin(std::sqrt(key)))); }};
+  return {std::move(keys), [&](double key) {
+            return stride * bins.find(math::degrees(2 * std::asin(std::sqrt(key))));
+          }};
 }
 
-/// Key of a direction error below 90 degrees: sin^2 of the angle.
+/// Table of direction errors below 90 degrees; their key is sin^2 of the angle.
 [[nodiscard]] inline key_table front_table(const angle_bins& bins) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {
@@ -17750,7 +17784,7 @@ class key_table {
           [&](double key) { return bins.find(math::degrees(std::asin(std::sqrt(key)))); }};
 }
 
-/// Key of a direction error above 90 degrees: sin^2 of what is missing to 180.
+/// Table of direction errors above 90 degrees; their key is sin^2 of what is missing to 180.
 [[nodiscard]] inline key_table back_table(const angle_bins& bins) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {
@@ -18507,7 +18541,8 @@ inline namespace AIB_ISA {
 ///   translation   t_ij = R_i^T (C_j - C_i). The angle between t_p,ij and t_g,ij is that between
 ///                 A_i^T (C_p,j - C_p,i) and C_g,j - C_g,i: a matrix of frame i, no pair matrix.
 /// Neither angle is calculated: sin^2 of it (of its half for rotations) is compared with the sin^2
-/// of the edges, see key_table. Results are the same bits for any number of threads.
+/// of the edges, see key_table. Some rows of pairs are counted side by side, so that what they read
+/// stays in the nearest cache. Results are the same bits for any number of threads.
 ///
 /// A pair has no direction where a baseline is too short for one, see baselines.
 class frame_pairs {
@@ -18554,18 +18589,30 @@ class frame_pairs {
     double rotation[block], direction[block];
     std::uint64_t rotation_cell[block], direction_cell[block];
   };
-  /// Cells of directions: those of front_table, those of back_table, one that asks.
-  struct cell_tables {
-    std::vector<key_table::cell> rotation, direction;
+  /// Where a pair counts, by the cells of its keys. Cells of directions: those of front, those of
+  /// back, no_direction.
+  struct place_tables {
+    explicit place_tables(const joint_counts& bins);
+    key_table rotation, front, back;
+    std::vector<std::uint32_t> direction_cells;
   };
+  static constexpr std::uint64_t no_direction = 2 * key_table::size();
 
   [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
-  [[nodiscard]] static cell_tables tables_of(const joint_counts& bins);
-  void count_row(std::size_t i,
-                 pair_row row,
-                 const cell_tables& tables,
-                 const joint_counts& bins,
-                 std::vector<std::uint32_t>& counts) const;
+  /// Where the pair of i and j + k counts whose keys lie in the cell of an edge.
+  [[nodiscard]] std::size_t place(std::size_t i,
+                                  std::size_t j,
+                                  std::size_t k,
+                                  const block_keys& keys,
+                                  const place_tables& tables,
+                                  const joint_counts& bins) const;
+  /// Counts frame i with those of its row in [j, j + block).
+  void count_block(std::size_t i,
+                   std::size_t j,
+                   pair_row row,
+                   const place_tables& tables,
+                   const joint_counts& bins,
+                   std::vector<std::uint32_t>& counts) const;
 
   std::size_t frames_;
   std::array<std::vector<double>, 4> residual_;           // quaternions a_i
@@ -18629,7 +18676,6 @@ inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j
   const double *pxs = &estimate_.x[j], *pys = &estimate_.y[j], *pzs = &estimate_.z[j];
   const double g_certain = reference_.certain() * reference_.certain();
   const double p_certain = estimate_.certain() * estimate_.certain();
-  constexpr std::uint64_t back = key_table::size(), ask = 2 * back;
   for (std::size_t k = 0; k < block; ++k) {
     const double g0 = gxs[k] - gx, g1 = gys[k] - gy, g2 = gzs[k] - gz;
     const double p0 = pxs[k] - px, p1 = pys[k] - py, p2 = pzs[k] - pz;
@@ -18640,48 +18686,56 @@ inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j
     const double pp = p0 * p0 + p1 * p1 + p2 * p2;
     const double dot = g0 * u0 + g1 * u1 + g2 * u2;
     out.direction[k] = 1 - dot * dot / (gg * pp);
-    const std::uint64_t cell = key_table::cell_of(out.direction[k]) + (dot < 0 ? back : 0);
-    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : ask;
+    const std::uint64_t cell =
+        key_table::cell_of(out.direction[k]) + (dot < 0 ? key_table::size() : 0);
+    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : no_direction;
   }
   return out;
 }
 
-inline frame_pairs::cell_tables frame_pairs::tables_of(const joint_counts& bins) {
-  cell_tables out;
-  const key_table rotation = rotation_table(bins.rotation());
-  const key_table front = front_table(bins.translation()), back = back_table(bins.translation());
-  const auto columns = static_cast<std::uint32_t>(bins.columns());
-  for (key_table::cell c : rotation.cells())
-    out.rotation.push_back({c.edge, {c.bin[0] * columns, c.bin[1] * columns}});
-  out.direction = front.cells();
-  out.direction.insert(out.direction.end(), back.cells().begin(), back.cells().end());
-  out.direction.push_back({std::numeric_limits<double>::quiet_NaN(), {0, 0}});
-  return out;
+inline frame_pairs::place_tables::place_tables(const joint_counts& bins)
+    : rotation(rotation_table(bins.rotation(), bins.columns())),
+      front(front_table(bins.translation())),
+      back(back_table(bins.translation())),
+      direction_cells(front.cells()) {
+  direction_cells.insert(direction_cells.end(), back.cells().begin(), back.cells().end());
+  direction_cells.push_back(key_table::edge);
 }
 
-inline void frame_pairs::count_row(std::size_t i,
-                                   pair_row row,
-                                   const cell_tables& tables,
-                                   const joint_counts& bins,
-                                   std::vector<std::uint32_t>& counts) const {
-  const key_table::cell* const rotation = tables.rotation.data();
-  const key_table::cell* const direction = tables.direction.data();
+inline std::size_t frame_pairs::place(std::size_t i,
+                                      std::size_t j,
+                                      std::size_t k,
+                                      const block_keys& keys,
+                                      const place_tables& tables,
+                                      const joint_counts& bins) const {
+  const std::uint64_t cell = keys.direction_cell[k];
+  if (cell < no_direction) {
+    const key_table& directions = cell < key_table::size() ? tables.front : tables.back;
+    const auto rotation = tables.rotation.find(keys.rotation[k]);
+    const auto direction = directions.find(keys.direction[k]);
+    if (rotation && direction) return *rotation + *direction;
+  }
+  const pair_error e = error(i, j + k);
+  return bins.place(e.rotation_deg, e.translation_deg);
+}
+
+inline void frame_pairs::count_block(std::size_t i,
+                                     std::size_t j,
+                                     pair_row row,
+                                     const place_tables& tables,
+                                     const joint_counts& bins,
+                                     std::vector<std::uint32_t>& counts) const {
+  const std::size_t begin = std::max(row.begin, j), end = std::min(row.end, j + block);
+  if (begin >= end) return;
+  const block_keys keys = keys_of(i, j);
+  const std::uint32_t* const rotation = tables.rotation.cells().data();
+  const std::uint32_t* const direction = tables.direction_cells.data();
   std::uint32_t* const count = counts.data();
-  for (std::size_t j = row.begin; j < row.end; j += block) {
-    const block_keys keys = keys_of(i, j);
-    const std::size_t n = std::min(block, row.end - j);
-    for (std::size_t k = 0; k < n; ++k) {
-      const key_table::cell& r = rotation[keys.rotation_cell[k]];
-      const key_table::cell& t = direction[keys.direction_cell[k]];
-      const double past_r = keys.rotation[k] - r.edge, past_t = keys.direction[k] - t.edge;
-      if (!(std::abs(past_r) > key_table::doubt) || !(std::abs(past_t) > key_table::doubt))
-          [[unlikely]] {
-        const pair_error e = error(i, j + k);
-        ++count[bins.place(e.rotation_deg, e.translation_deg)];
-      } else {
-        ++count[r.bin[std::signbit(past_r)] + t.bin[std::signbit(past_t)]];
-      }
-    }
+  for (std::size_t k = begin - j; k < end - j; ++k) {
+    std::size_t at = rotation[keys.rotation_cell[k]] + direction[keys.direction_cell[k]];
+    if (at >= key_table::edge) [[unlikely]]
+      at = place(i, j, k, keys, tables, bins);
+    ++count[at];
   }
 }
 
@@ -18692,11 +18746,20 @@ joint_counts frame_pairs::count_rows(angle_bins rotation,
                                      unsigned threads,
                                      const control& control) const {
   joint_counts total(std::move(rotation), std::move(translation));
-  const cell_tables tables = tables_of(total);
+  const place_tables tables(total);
   std::mutex mutex;
   for_each_chunk(frames_, rows, threads, control, [&](const chunk& c) {
+    std::array<pair_row, rows> row_of;
+    pair_row all{frames_, 0};
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const pair_row r = row_of[i - c.begin] = row(i);
+      all = {std::min(all.begin, r.begin), std::max(all.end, r.end)};
+    }
     std::vector<std::uint32_t> counts(total.places());
-    for (std::size_t i = c.begin; i < c.end; ++i) count_row(i, row(i), tables, total, counts);
+    for (std::size_t j = all.begin; j < all.end; j += block) {
+      for (std::size_t i = c.begin; i < c.end; ++i)
+        count_block(i, j, row_of[i - c.begin], tables, total, counts);
+    }
     const std::scoped_lock lock(mutex);  // integers: the order of the sums does not matter
     total.add(counts);
   });

@@ -7,6 +7,8 @@
 /// can be linked together.
 #if defined(AIB_PLAIN)
 #define AIB_ISA plain
+#elif defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define AIB_ISA avx512
 #elif defined(__AVX2__)
 #define AIB_ISA avx2
 #elif defined(__SSE2__)
@@ -22,7 +24,7 @@ inline namespace AIB_ISA {}
 #define AIB_ISA_TEXT_(name) #name
 #define AIB_ISA_TEXT(name) AIB_ISA_TEXT_(name)
 
-/// "avx2", "sse2" or "plain".
+/// "avx512", "avx2", "sse2" or "plain".
 inline constexpr const char* instruction_set = AIB_ISA_TEXT(AIB_ISA);
 
 #undef AIB_ISA_TEXT

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,81 +50,83 @@ class angle_bins {
   std::vector<double> edges_deg_;
 };
 
-/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root, an
-/// arc function or a search: the leading bits of the key choose a cell, which holds at most one
-/// edge. Where a key is too near to an edge for its rounding, or a cell holds several edges, the
-/// table says so, and the caller calculates the angle.
+/// Finds the bin of an angle from a key in [0, 1] that grows or falls with it, without a root or an
+/// arc function. The leading bits of the key choose a cell. Most cells lie within one bin; the
+/// others name their first edge, and the key is compared. Where it is too near to an edge for its
+/// rounding, the table does not know, and the caller calculates the angle.
 class key_table {
  public:
-  struct cell {
-    double edge;           ///< key; infinite: no edge here; NaN: ask the angle
-    std::uint32_t bin[2];  ///< of keys above, of keys below the edge: indexed by a sign bit
-  };
-
-  /// Cells of a table.
-  static constexpr std::size_t size() { return cell_of(1) + 1; }
+  /// Added to the number of an edge in place of a bin.
+  static constexpr std::uint32_t edge = 1u << 30;
 
   /// Keys nearer to an edge than this are not trusted: tens of roundings of a key in [0, 1].
   static constexpr double doubt = 1e-14;
 
-  /// Cell of a key.
+  /// Cell of a key. All keys below the lowest share one.
   static constexpr std::size_t cell_of(double key) {
     return (std::bit_cast<std::uint64_t>(key > lowest ? key : lowest) >> shift) - first;
   }
 
-  /// keys   keys of the edges, in any order
-  /// bin    bin of a key, std::size_t(double)
+  /// Cells of a table.
+  static constexpr std::size_t size() { return cell_of(1) + 1; }
+
+  /// keys   of the edges, in any order
+  /// bin    bin of a key, std::size_t(double); below `edge`
   template <class BinOfKey>
-  key_table(std::vector<double> keys, BinOfKey&& bin) {
-    std::sort(keys.begin(), keys.end());
-    cells_.reserve(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double low = i == 0 ? 0 : lower_end(i);
-      const double high = std::min(1.0, lower_end(i + 1));
-      const auto from = std::lower_bound(keys.begin(), keys.end(), low - doubt);
-      const auto to = std::upper_bound(keys.begin(), keys.end(), high + doubt);
-      cells_.push_back(from == to ? without_edge(bin((low + high) / 2))
-                                  : with_edges(low, *from, *(to - 1), high, bin));
+  key_table(std::vector<double> keys, BinOfKey&& bin) : edges_(std::move(keys)), cells_(size()) {
+    std::sort(edges_.begin(), edges_.end());
+    for (std::size_t k = 0; k <= edges_.size(); ++k) {
+      const double low = k == 0 ? 0 : edges_[k - 1], high = k == edges_.size() ? 1 : edges_[k];
+      bins_.push_back(static_cast<std::uint32_t>(bin((low + high) / 2)));
+      fill(low, high, bins_.back());
     }
+    for (std::size_t k = edges_.size(); k-- > 0;)
+      fill(edges_[k] - doubt, edges_[k] + doubt, edge + static_cast<std::uint32_t>(k));
   }
 
-  [[nodiscard]] const std::vector<cell>& cells() const { return cells_; }
+  /// One a cell: the bin of all its keys, or `edge` and its first edge.
+  [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
+
+  /// The bin of a key; nothing where an edge is too near.
+  [[nodiscard]] std::optional<std::uint32_t> find(double key) const {
+    const std::uint32_t cell = cells_[cell_of(key)];
+    if (cell < edge) return cell;
+    std::size_t k = cell - edge;
+    while (k < edges_.size() && key > edges_[k] + doubt) ++k;
+    if (k < edges_.size() && key >= edges_[k] - doubt) return std::nullopt;
+    return bins_[k];
+  }
 
  private:
-  static constexpr double lowest = 0x1p-20;
-  static constexpr int shift = 46;  // leaves 6 of 52 fraction bits: 64 cells an octave
+  static constexpr double lowest = 0x1p-14;
+  static constexpr int shift = 43;  // leaves 9 of 52 fraction bits: 512 cells an octave
   static constexpr std::uint64_t first = std::bit_cast<std::uint64_t>(lowest) >> shift;
 
-  static double lower_end(std::size_t i) { return std::bit_cast<double>((first + i) << shift); }
-
-  static cell without_edge(std::size_t bin) {
-    const auto b = static_cast<std::uint32_t>(bin);
-    return {std::numeric_limits<double>::infinity(), {b, b}};
+  void fill(double low, double high, std::uint32_t value) {
+    const auto cell = [&](double key) {
+      return cells_.begin() + static_cast<std::ptrdiff_t>(cell_of(std::min(key, 1.0)));
+    };
+    std::fill(cell(low), cell(high) + 1, value);
   }
 
-  template <class BinOfKey>
-  static cell with_edges(double low, double edge, double last, double high, BinOfKey& bin) {
-    if (last - edge > doubt / 4) return {std::numeric_limits<double>::quiet_NaN(), {0, 0}};
-    return {edge,
-            {static_cast<std::uint32_t>(bin(std::min(1.0, (edge + high) / 2))),
-             static_cast<std::uint32_t>(bin(std::max(0.0, (low + edge) / 2)))}};
-  }
-
-  std::vector<cell> cells_;
+  std::vector<double> edges_;
+  std::vector<std::uint32_t> bins_;  // below the first edge, between two, above the last
+  std::vector<std::uint32_t> cells_;
 };
 
-/// Key of a rotation error: sin^2 of half the angle.
-[[nodiscard]] inline key_table rotation_table(const angle_bins& bins) {
+/// Table of rotation errors; their key is sin^2 of half the angle. A bin counts `stride`.
+[[nodiscard]] inline key_table rotation_table(const angle_bins& bins, std::size_t stride = 1) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {
     const double s = std::sin(math::radians(e) / 2);
     if (e <= 180) keys.push_back(s * s);
   }
-  return {std::move(keys),
-          [&](double key) { return bins.find(math::degrees(2 * std::asin(std::sqrt(key)))); }};
+  return {std::move(keys), [&](double key) {
+            return stride * bins.find(math::degrees(2 * std::asin(std::sqrt(key))));
+          }};
 }
 
-/// Key of a direction error below 90 degrees: sin^2 of the angle.
+/// Table of direction errors below 90 degrees; their key is sin^2 of the angle.
 [[nodiscard]] inline key_table front_table(const angle_bins& bins) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {
@@ -135,7 +137,7 @@ class key_table {
           [&](double key) { return bins.find(math::degrees(std::asin(std::sqrt(key)))); }};
 }
 
-/// Key of a direction error above 90 degrees: sin^2 of what is missing to 180.
+/// Table of direction errors above 90 degrees; their key is sin^2 of what is missing to 180.
 [[nodiscard]] inline key_table back_table(const angle_bins& bins) {
   std::vector<double> keys;
   for (const double e : bins.edges_deg()) {

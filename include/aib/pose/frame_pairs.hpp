@@ -51,7 +51,8 @@ inline namespace AIB_ISA {
 ///   translation   t_ij = R_i^T (C_j - C_i). The angle between t_p,ij and t_g,ij is that between
 ///                 A_i^T (C_p,j - C_p,i) and C_g,j - C_g,i: a matrix of frame i, no pair matrix.
 /// Neither angle is calculated: sin^2 of it (of its half for rotations) is compared with the sin^2
-/// of the edges, see key_table. Results are the same bits for any number of threads.
+/// of the edges, see key_table. Some rows of pairs are counted side by side, so that what they read
+/// stays in the nearest cache. Results are the same bits for any number of threads.
 ///
 /// A pair has no direction where a baseline is too short for one, see baselines.
 class frame_pairs {
@@ -98,18 +99,30 @@ class frame_pairs {
     double rotation[block], direction[block];
     std::uint64_t rotation_cell[block], direction_cell[block];
   };
-  /// Cells of directions: those of front_table, those of back_table, one that asks.
-  struct cell_tables {
-    std::vector<key_table::cell> rotation, direction;
+  /// Where a pair counts, by the cells of its keys. Cells of directions: those of front, those of
+  /// back, no_direction.
+  struct place_tables {
+    explicit place_tables(const joint_counts& bins);
+    key_table rotation, front, back;
+    std::vector<std::uint32_t> direction_cells;
   };
+  static constexpr std::uint64_t no_direction = 2 * key_table::size();
 
   [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
-  [[nodiscard]] static cell_tables tables_of(const joint_counts& bins);
-  void count_row(std::size_t i,
-                 pair_row row,
-                 const cell_tables& tables,
-                 const joint_counts& bins,
-                 std::vector<std::uint32_t>& counts) const;
+  /// Where the pair of i and j + k counts whose keys lie in the cell of an edge.
+  [[nodiscard]] std::size_t place(std::size_t i,
+                                  std::size_t j,
+                                  std::size_t k,
+                                  const block_keys& keys,
+                                  const place_tables& tables,
+                                  const joint_counts& bins) const;
+  /// Counts frame i with those of its row in [j, j + block).
+  void count_block(std::size_t i,
+                   std::size_t j,
+                   pair_row row,
+                   const place_tables& tables,
+                   const joint_counts& bins,
+                   std::vector<std::uint32_t>& counts) const;
 
   std::size_t frames_;
   std::array<std::vector<double>, 4> residual_;           // quaternions a_i
@@ -173,7 +186,6 @@ inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j
   const double *pxs = &estimate_.x[j], *pys = &estimate_.y[j], *pzs = &estimate_.z[j];
   const double g_certain = reference_.certain() * reference_.certain();
   const double p_certain = estimate_.certain() * estimate_.certain();
-  constexpr std::uint64_t back = key_table::size(), ask = 2 * back;
   for (std::size_t k = 0; k < block; ++k) {
     const double g0 = gxs[k] - gx, g1 = gys[k] - gy, g2 = gzs[k] - gz;
     const double p0 = pxs[k] - px, p1 = pys[k] - py, p2 = pzs[k] - pz;
@@ -184,48 +196,56 @@ inline frame_pairs::block_keys frame_pairs::keys_of(std::size_t i, std::size_t j
     const double pp = p0 * p0 + p1 * p1 + p2 * p2;
     const double dot = g0 * u0 + g1 * u1 + g2 * u2;
     out.direction[k] = 1 - dot * dot / (gg * pp);
-    const std::uint64_t cell = key_table::cell_of(out.direction[k]) + (dot < 0 ? back : 0);
-    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : ask;
+    const std::uint64_t cell =
+        key_table::cell_of(out.direction[k]) + (dot < 0 ? key_table::size() : 0);
+    out.direction_cell[k] = ((gg > g_certain) & (pp > p_certain)) ? cell : no_direction;
   }
   return out;
 }
 
-inline frame_pairs::cell_tables frame_pairs::tables_of(const joint_counts& bins) {
-  cell_tables out;
-  const key_table rotation = rotation_table(bins.rotation());
-  const key_table front = front_table(bins.translation()), back = back_table(bins.translation());
-  const auto columns = static_cast<std::uint32_t>(bins.columns());
-  for (key_table::cell c : rotation.cells())
-    out.rotation.push_back({c.edge, {c.bin[0] * columns, c.bin[1] * columns}});
-  out.direction = front.cells();
-  out.direction.insert(out.direction.end(), back.cells().begin(), back.cells().end());
-  out.direction.push_back({std::numeric_limits<double>::quiet_NaN(), {0, 0}});
-  return out;
+inline frame_pairs::place_tables::place_tables(const joint_counts& bins)
+    : rotation(rotation_table(bins.rotation(), bins.columns())),
+      front(front_table(bins.translation())),
+      back(back_table(bins.translation())),
+      direction_cells(front.cells()) {
+  direction_cells.insert(direction_cells.end(), back.cells().begin(), back.cells().end());
+  direction_cells.push_back(key_table::edge);
 }
 
-inline void frame_pairs::count_row(std::size_t i,
-                                   pair_row row,
-                                   const cell_tables& tables,
-                                   const joint_counts& bins,
-                                   std::vector<std::uint32_t>& counts) const {
-  const key_table::cell* const rotation = tables.rotation.data();
-  const key_table::cell* const direction = tables.direction.data();
+inline std::size_t frame_pairs::place(std::size_t i,
+                                      std::size_t j,
+                                      std::size_t k,
+                                      const block_keys& keys,
+                                      const place_tables& tables,
+                                      const joint_counts& bins) const {
+  const std::uint64_t cell = keys.direction_cell[k];
+  if (cell < no_direction) {
+    const key_table& directions = cell < key_table::size() ? tables.front : tables.back;
+    const auto rotation = tables.rotation.find(keys.rotation[k]);
+    const auto direction = directions.find(keys.direction[k]);
+    if (rotation && direction) return *rotation + *direction;
+  }
+  const pair_error e = error(i, j + k);
+  return bins.place(e.rotation_deg, e.translation_deg);
+}
+
+inline void frame_pairs::count_block(std::size_t i,
+                                     std::size_t j,
+                                     pair_row row,
+                                     const place_tables& tables,
+                                     const joint_counts& bins,
+                                     std::vector<std::uint32_t>& counts) const {
+  const std::size_t begin = std::max(row.begin, j), end = std::min(row.end, j + block);
+  if (begin >= end) return;
+  const block_keys keys = keys_of(i, j);
+  const std::uint32_t* const rotation = tables.rotation.cells().data();
+  const std::uint32_t* const direction = tables.direction_cells.data();
   std::uint32_t* const count = counts.data();
-  for (std::size_t j = row.begin; j < row.end; j += block) {
-    const block_keys keys = keys_of(i, j);
-    const std::size_t n = std::min(block, row.end - j);
-    for (std::size_t k = 0; k < n; ++k) {
-      const key_table::cell& r = rotation[keys.rotation_cell[k]];
-      const key_table::cell& t = direction[keys.direction_cell[k]];
-      const double past_r = keys.rotation[k] - r.edge, past_t = keys.direction[k] - t.edge;
-      if (!(std::abs(past_r) > key_table::doubt) || !(std::abs(past_t) > key_table::doubt))
-          [[unlikely]] {
-        const pair_error e = error(i, j + k);
-        ++count[bins.place(e.rotation_deg, e.translation_deg)];
-      } else {
-        ++count[r.bin[std::signbit(past_r)] + t.bin[std::signbit(past_t)]];
-      }
-    }
+  for (std::size_t k = begin - j; k < end - j; ++k) {
+    std::size_t at = rotation[keys.rotation_cell[k]] + direction[keys.direction_cell[k]];
+    if (at >= key_table::edge) [[unlikely]]
+      at = place(i, j, k, keys, tables, bins);
+    ++count[at];
   }
 }
 
@@ -236,11 +256,20 @@ joint_counts frame_pairs::count_rows(angle_bins rotation,
                                      unsigned threads,
                                      const control& control) const {
   joint_counts total(std::move(rotation), std::move(translation));
-  const cell_tables tables = tables_of(total);
+  const place_tables tables(total);
   std::mutex mutex;
   for_each_chunk(frames_, rows, threads, control, [&](const chunk& c) {
+    std::array<pair_row, rows> row_of;
+    pair_row all{frames_, 0};
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const pair_row r = row_of[i - c.begin] = row(i);
+      all = {std::min(all.begin, r.begin), std::max(all.end, r.end)};
+    }
     std::vector<std::uint32_t> counts(total.places());
-    for (std::size_t i = c.begin; i < c.end; ++i) count_row(i, row(i), tables, total, counts);
+    for (std::size_t j = all.begin; j < all.end; j += block) {
+      for (std::size_t i = c.begin; i < c.end; ++i)
+        count_block(i, j, row_of[i - c.begin], tables, total, counts);
+    }
     const std::scoped_lock lock(mutex);  // integers: the order of the sums does not matter
     total.add(counts);
   });

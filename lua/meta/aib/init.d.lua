@@ -4,7 +4,7 @@
 ---degrees, lengths the unit of the input. A metric over nothing raises an error of the kind "undefined".
 ---@class aib
 ---@field version string
----@field instruction_set "avx2"|"sse2"|"plain"  # what the binary was built for
+---@field instruction_set "avx512"|"avx2"|"sse2"|"plain"  # what the binary was built for
 local aib = {}
 
 ---Kind of a caught error, from its message: "argument" (the call is wrong), "io" (a file cannot be read or written),
