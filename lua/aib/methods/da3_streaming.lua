@@ -1,0 +1,33 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- Depth Anything 3, streaming: camera_poses.txt (world_from_camera), intrinsic.txt and results_output/frame_<i>.npz.
+local aib = require "aib"
+local kit = require "aib.methods.kit"
+
+local function frames(folder) return kit.numbered(folder .. "/results_output", "^frame_(%d+)%.npz$") end
+
+return {
+  kind = "da3_streaming",
+  find = function(folder)
+    if kit.exists(folder, "camera_poses.txt") and #frames(folder) > 0 then
+      return "camera_poses.txt and results_output/frame_<i>.npz"
+    end
+  end,
+  open = function(folder, options)
+    local files = frames(folder)
+    local names, told = kit.names(folder, #files, options)
+    local function map(key)
+      return function(i) return aib.io.read_depth(folder .. "/results_output/" .. files[i], { key = key }) end
+    end
+    local first = map "depth"(1)
+    local combined = folder .. "/pcd/combined_pcd.ply"
+    return {
+      names = names, named = told, rule = "raw", depth = map "depth", confidence = map "conf",
+      trajectory = aib.io.read_trajectory(folder, { names = names }),
+      cameras = kit.exists(folder, "intrinsic.txt") and
+        aib.io.read_cameras(folder, { names = names, width = first.width, height = first.height }) or nil,
+      points = aib.system.is_file(combined) and kit.cloud(combined) or nil,
+    }
+  end,
+}
