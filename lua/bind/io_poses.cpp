@@ -1,15 +1,10 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
-#include <aib/io/npy.hpp>
 #include <aib/io/trajectory.hpp>
 #include <aib/io/trajectory_write.hpp>
 
 #include "camera.hpp"
 #include "kit.hpp"
-
-#ifdef AIB_WITH_NPZ
-#include <aib/io/npz.hpp>
-#endif
 
 #include <filesystem>
 #include <initializer_list>
@@ -102,57 +97,6 @@ record as_record(lua_State* state, io::colmap_model model) {
   return r;
 }
 
-std::string print_array(const io::array& a) {
-  return message("array(", name(a.type), " ", io::text_of_shape(a.shape), ")");
-}
-
-std::size_t bytes_of_array(const io::array& a) { return a.bytes.size(); }
-
-bool is_npz(const fs::path& path) { return path.extension() == ".npz"; }
-
-#ifdef AIB_WITH_NPZ
-io::array read_member(const fs::path& path, const std::string& key) {
-  const io::npz_file file(path);
-  const std::vector<std::string> names = file.names();
-  return file.read(key.empty() && names.size() == 1 ? names.front() : key);
-}
-std::vector<std::string> member_names(const fs::path& path) {
-  return is_npz(path) ? io::npz_file(path).names() : std::vector<std::string>();
-}
-#else
-io::array read_member(const fs::path& path, const std::string&) {
-  io::detail::needs_library(path, "NPZ", "zlib");
-}
-std::vector<std::string> member_names(const fs::path& path) {
-  io::detail::needs_library(path, "NPZ", "zlib");
-}
-#endif
-
-void bind_array(lua_State* state) {
-  type<io::array>(state, "array", print_array, bytes_of_array)
-      .length([](const io::array& a) { return a.size(); })
-      .element([](const io::array& a, std::size_t i) { return a[i]; })
-      .field("shape", [](const io::array& a) { return a.shape; })
-      .field("dtype", [](const io::array& a) { return name(a.type); })
-      .method("at", {"index"}, [](const io::array& a, std::size_t index) {
-        if (index == 0) throw argument_error("array:at: indices begin at 1");
-        return a.at(index - 1);
-      });
-}
-
-void bind_arrays(lua_State* state) {
-  module(state, "io")
-      .function("read_array", {"path", "options"},
-                [](const fs::path& path, options& o) {
-                  const std::string key = o.text("key", "");
-                  o.done();
-                  return is_npz(path) ? read_member(path, key) : io::read_npy(path);
-                })
-      .function("array_names", {"path"}, [](const fs::path& path) { return member_names(path); })
-      .function("write_array", {"path", "array"},
-                [](const fs::path& path, const io::array& a) { io::write_npy(path, a); });
-}
-
 void bind_trajectories(lua_State* state) {
   module(state, "io")
       .function("read_trajectory", {"path", "options"},
@@ -188,8 +132,6 @@ void bind_colmap(lua_State* state) {
 }  // namespace
 
 void bind_io_poses(lua_State* state) {
-  bind_array(state);
-  bind_arrays(state);
   bind_trajectories(state);
   bind_colmap(state);
 }

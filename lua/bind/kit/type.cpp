@@ -93,16 +93,23 @@ int pairs(lua_State* state) {
   return 3;
 }
 
-/// Upvalue: element function.
+/// Upvalue: element function. As string.sub: (first = 1, last = -1), negative from the end.
 int to_table(lua_State* state) {
   const lua_Integer n = luaL_len(state, 1);
-  lua_createtable(state, static_cast<int>(std::min<lua_Integer>(n, 1 << 30)), 0);
-  for (lua_Integer i = 1; i <= n; ++i) {
+  const auto bound = [&](int argument, lua_Integer otherwise) {
+    const lua_Integer i = luaL_optinteger(state, argument, otherwise);
+    return i < 0 ? n + 1 + i : i;
+  };
+  const lua_Integer first = std::max<lua_Integer>(bound(2, 1), 1);
+  const lua_Integer last = std::min(bound(3, -1), n);
+  const lua_Integer size = std::max<lua_Integer>(last - first + 1, 0);
+  lua_createtable(state, static_cast<int>(std::min<lua_Integer>(size, 1 << 30)), 0);
+  for (lua_Integer i = first; i <= last; ++i) {
     lua_pushvalue(state, lua_upvalueindex(1));
     lua_pushvalue(state, 1);
     lua_pushinteger(state, i - 1);
     lua_call(state, 2, 1);
-    lua_rawseti(state, -2, i);
+    lua_rawseti(state, -2, i - first + 1);
   }
   return 1;
 }

@@ -82,8 +82,8 @@ class type {
     return meta("__len", {}, f);
   }
 
-  /// `object[1] .. object[#object]`, ipairs, pairs and `object:to_table()`. The lambda is given the
-  /// zero-based index, always below the length; needs `length` first.
+  /// `object[1] .. object[#object]`, ipairs, pairs and `object:to_table([first [, last]])`. The
+  /// lambda is given the zero-based index, always below the length; needs `length` first.
   template <class F>
   type& element(F f) {
     push_function(state_, name_ + ".__element", {"self", "index"}, f);

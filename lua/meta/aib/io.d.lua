@@ -100,10 +100,17 @@ function io.read_array(path, options) end
 ---@return string[]
 function io.array_names(path) end
 
----Writes an NPY file.
+---The numbers of a value, as NumPy holds them: of distances (N), of a cloud (N x 3, with its origin),
+---of a depth map (height x width), of a trajectory (N x 4 x 4, world from camera), of a list of
+---numbers or of lists of one size.
+---@param value aib.Array|aib.Distances|aib.Cloud|aib.DepthMap|aib.Trajectory|table
+---@return aib.Array
+function io.array(value) end
+
+---Writes an NPY file, for numpy.load.
 ---@param path string
----@param array aib.Array
-function io.write_array(path, array) end
+---@param value aib.Array|aib.Distances|aib.Cloud|aib.DepthMap|aib.Trajectory|table  # as aib.io.array takes it
+function io.write_array(path, value) end
 
 ---@class aib.io.CloudOptions
 ---@field up? "z"|"y"  # axis that points up in the file; "y" turns (x, y, z) to (x, -z, y)
