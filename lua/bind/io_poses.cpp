@@ -5,7 +5,6 @@
 
 #include "camera.hpp"
 #include "kit.hpp"
-
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
