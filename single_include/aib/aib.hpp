@@ -666,17 +666,27 @@ namespace aib::align {
 
 /// What an alignment may change.
 enum class align_mode {
-  sim3,   ///< rotation, translation, scale
-  se3,    ///< rotation, translation
-  yaw,    ///< the turn about the vertical, translation: both worlds know where down is
-  scale,  ///< scale alone, as evo's --correct_scale without --align
-  first,  ///< the rigid motion that lays the first pose of the one on that of the other
+  sim3,       ///< rotation, translation, scale
+  se3,        ///< rotation, translation
+  yaw,        ///< the turn about the vertical, translation: both worlds know where down is
+  yaw_scale,  ///< the same and scale
+  scale,      ///< scale alone, as evo's --correct_scale without --align
+  first,      ///< the rigid motion that lays the first pose of the one on that of the other
 };
+
+/// Whether a fit turns about the vertical alone.
+[[nodiscard]] constexpr bool is_about_vertical(align_mode mode) {
+  return mode == align_mode::yaw || mode == align_mode::yaw_scale;
+}
+
+[[nodiscard]] constexpr bool has_scale(align_mode mode) {
+  return mode == align_mode::sim3 || mode == align_mode::yaw_scale || mode == align_mode::scale;
+}
 
 struct fit_options {
   align_mode mode = align_mode::sim3;
   double rotation_weight = 0;  ///< sim3, se3: > 0: orientations count, a radian as this length
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw: the vertical of both worlds
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw, yaw_scale: the vertical of both worlds
   rank_rule convention = rank_rule::relative;
 };
 
@@ -695,6 +705,17 @@ class pose_fit {
   /// Distance that a transform leaves between the positions of a pose.
   [[nodiscard]] double residual(const math::sim3& ref_from_est, std::size_t i) const {
     return (ref_from_est * estimate_[i].translation - reference_[i].translation).norm();
+  }
+
+  /// Square sum of the residuals of the chosen poses.
+  [[nodiscard]] double square_sum(const math::sim3& ref_from_est,
+                                  std::span<const std::size_t> chosen) const {
+    double sum = 0;
+    for (const std::size_t i : chosen) {
+      const double r = residual(ref_from_est, i);
+      sum += r * r;
+    }
+    return sum;
   }
 
   [[nodiscard]] std::vector<Eigen::Vector3d> estimate(std::span<const std::size_t> chosen) const {
@@ -724,7 +745,7 @@ inline math::sim3 pose_fit::operator()(std::span<const std::size_t> chosen) cons
     const math::rigid3 moved = reference_[chosen.front()] * estimate_[chosen.front()].inverse();
     return {1, moved.rotation, moved.translation};
   }
-  if (options_.mode == align_mode::yaw) return about_vertical(chosen);
+  if (is_about_vertical(options_.mode)) return about_vertical(chosen);
   const bool turns = options_.mode != align_mode::scale;
   if (turns && options_.rotation_weight > 0) return with_rotations(chosen);
   const math::sim3 fitted =
@@ -763,19 +784,26 @@ inline math::sim3 pose_fit::with_rotations(std::span<const std::size_t> chosen) 
 }
 
 /// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation", IROS 2018,
-/// Sec. III-C.
+/// Sec. III-C; the scale as in Umeyama, PAMI 1991, Eq. (42).
 inline math::sim3 pose_fit::about_vertical(std::span<const std::size_t> chosen) const {
   const Eigen::Vector3d up = options_.up.normalized();
   if (!up.allFinite()) throw argument_error("align: up has no direction");
   const detail::paired_moments m(estimate(chosen), reference(chosen));
   const Eigen::Matrix3d& c = m.covariance;
-  // sum y . R x = cos a tr((I - up up^T) C) + sin a (up . sum x cross y) + constant
+  // mean of y . R x = cos a tr((I - up up^T) C) + sin a (up . mean of x cross y) + up . C up
   const Eigen::Vector3d cross(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
-  const double cosine = c.trace() - up.dot(c * up), sine = up.dot(cross);
+  const double vertical = up.dot(c * up), cosine = c.trace() - vertical, sine = up.dot(cross);
   if (!(std::hypot(cosine, sine) > refused_ratio * c.norm()))
     throw undefined_error("align: the positions leave the turn about the vertical free");
   const Eigen::Vector3d turn = std::atan2(sine, cosine) * up;
-  return m.centred(1, math::rotation_from(turn));
+  const double scale = options_.mode == align_mode::yaw
+                           ? 1
+                           : (vertical + std::hypot(cosine, sine)) / m.estimate_variance;
+  if (!(scale > 0)) {
+    throw undefined_error(
+        message("align: heights and the turn contradict each other, scale ", scale));
+  }
+  return m.centred(scale, math::rotation_from(turn));
 }
 
 }  // namespace aib::align
@@ -1064,9 +1092,10 @@ struct alignment {
   std::size_t n_inliers;              ///< frames that the fit used
   std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
   double rmse;                        ///< of the inliers' positions, unit of the reference
+  std::optional<double> half_rmse;    ///< of every other inlier under a fit to the others
   double condition;   ///< first over second singular value of the positions, of the worse side
-  double turn_deg;    ///< expected error of the turn about the long axis of the positions, <= 90
-  double turn_error;  ///< what that moves a point `stand_off` away from the axis
+  double turn_deg;    ///< expected error of the turn that the positions tell worst, <= 90
+  double turn_error;  ///< what that moves a point `stand_off` away from its axis
   std::vector<std::string> warnings;
 };
 
@@ -1081,18 +1110,56 @@ alignment trajectory(const pose::trajectory& estimate,
 
 namespace detail {
 
-/// Distances from the long axis of the positions, root of their square sum.
-inline double lever(const spread& s) {
-  return std::hypot(s.singular_values[1], s.singular_values[2]);
+/// The turn that positions tell worst: about their long axis, or the vertical where a fit turns
+/// about nothing else.
+struct weakest_turn {
+  Eigen::Vector3d axis;
+  double lever;  ///< root of the square sum of the distances from it
+};
+
+inline weakest_turn weakest_turn_of(std::span<const Eigen::Vector3d> positions,
+                                    const fit_options& options) {
+  const spread s = spread_of(positions);
+  if (!is_about_vertical(options.mode))
+    return {s.axes.col(0), std::hypot(s.singular_values[1], s.singular_values[2])};
+  const Eigen::Vector3d up = options.up.normalized();
+  double sum = 0;
+  for (const Eigen::Vector3d& p : positions) sum += (p - s.mean).cross(up).squaredNorm();
+  return {up, std::sqrt(sum)};
 }
 
-/// Standard deviation of the turn about the long axis, radians, at most a right angle: the residual
-/// of a coordinate over the lever.
+/// Standard deviation of a turn, radians, at most a right angle: the residual of a coordinate over
+/// the lever.
 inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t parameters) {
   constexpr double right_angle = std::numbers::pi / 2;
   const double freedom = 3 * static_cast<double>(n) - static_cast<double>(parameters);
   if (!(freedom > 0) || !(lever > 0)) return right_angle;
   return std::min(right_angle, std::sqrt(sse / freedom) / lever);
+}
+
+inline std::size_t parameters_of(align_mode mode) {
+  return (is_about_vertical(mode) ? 4u : 6u) + (has_scale(mode) ? 1u : 0u);
+}
+
+/// Error of the odd poses of those chosen under a fit to the even ones; nothing where these do not
+/// tell it.
+inline std::optional<double> half_rmse(const pose_fit& fit, std::span<const std::size_t> chosen) {
+  std::vector<std::size_t> even, odd;
+  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
+  if (odd.empty()) return std::nullopt;
+  try {
+    return std::sqrt(fit.square_sum(fit(even), odd) / static_cast<double>(odd.size()));
+  } catch (const undefined_error&) {
+    return std::nullopt;
+  }
+}
+
+/// What a user should know about how well the turn is known.
+inline std::string turn_warning(const alignment& a, const Eigen::Vector3d& axis, double stand_off) {
+  return message("the turn about ", direction_text(axis), ", along which the positions lie ",
+                 "(condition ", std::round(a.condition), "), is known to +-",
+                 std::round(a.turn_deg * 10) / 10, " deg, ", std::round(a.turn_error * 100) / 100,
+                 " at a distance of ", stand_off, "; rotation_weight uses the orientations");
 }
 
 /// The scale that the median distances from the median positions tell.
@@ -1125,6 +1192,7 @@ inline alignment trajectory(const pose::trajectory& estimate,
                 .n_inliers = used.size(),
                 .outliers = {},
                 .rmse = 0,
+                .half_rmse = detail::half_rmse(fit, used),
                 .condition = 1,
                 .turn_deg = 0,
                 .turn_error = 0,
@@ -1133,35 +1201,26 @@ inline alignment trajectory(const pose::trajectory& estimate,
   std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
                       std::back_inserter(left_out));
   for (const std::size_t i : left_out) out.outliers.push_back(frames.index[i]);
-  double sse = 0;
-  for (const std::size_t i : used) {
-    const double r = fit.residual(out.transform, i);
-    sse += r * r;
-  }
+  const double sse = fit.square_sum(out.transform, used);
   out.rmse = std::sqrt(sse / static_cast<double>(used.size()));
-  if (options.fit.mode == align_mode::first) return out;
+  const align_mode mode = options.fit.mode;
+  if (mode == align_mode::first) return out;
 
   const std::vector<Eigen::Vector3d> x = fit.estimate(used), y = fit.reference(used);
-  const spread s = spread_of(x), s_reference = spread_of(y);
-  out.condition = std::max(s.condition(), s_reference.condition());
-  const bool turns = options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::se3;
-  if (turns && !(options.fit.rotation_weight > 0)) {
+  out.condition = std::max(spread_of(x).condition(), spread_of(y).condition());
+  if (mode != align_mode::scale && !(options.fit.rotation_weight > 0)) {
+    const auto in_estimate = detail::weakest_turn_of(x, options.fit);
+    const auto in_reference = detail::weakest_turn_of(y, options.fit);
     // Of both sides the thinner: noise widens a line, it never narrows one.
-    const double turn = detail::turn_sigma(
-        std::min(out.transform.scale * detail::lever(s), detail::lever(s_reference)), sse,
-        used.size(), options.fit.mode == align_mode::sim3 ? 7 : 6);
+    const double lever = std::min(out.transform.scale * in_estimate.lever, in_reference.lever);
+    const double turn = detail::turn_sigma(lever, sse, used.size(), detail::parameters_of(mode));
     out.turn_deg = math::degrees(turn);
     out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
-    if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
-      const Eigen::Vector3d axis = s_reference.axes.col(0);
-      out.warnings.push_back(message(
-          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
-          "(condition ", std::round(out.condition), "), is known to +-",
-          std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
-          " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
-    }
+    const bool thin = !is_about_vertical(mode) && 1 / out.condition < doubted_ratio;
+    if (thin || out.turn_deg > 5)
+      out.warnings.push_back(detail::turn_warning(out, in_reference.axis, options.stand_off));
   }
-  if (options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::scale) {
+  if (has_scale(mode)) {
     const double expected = detail::scale_of_medians(x, y);
     const double off = out.transform.scale / expected;
     if (std::isfinite(expected) && (off < 0.5 || off > 2)) {
@@ -1179,32 +1238,37 @@ inline alignment trajectory(const pose::trajectory& estimate,
 
 namespace aib::align {
 
+/// Which frames make a batch: the first of these that is set.
 struct batches_options {
-  std::size_t size = 200;               ///< frames of a batch; the last has what is left
-  std::vector<std::size_t> sizes = {};  ///< frames of each batch instead, in order
-  trajectory_options align = {};        ///< of each batch
+  std::vector<std::vector<std::string>> names =
+      {};  ///< of each batch; those of no pose are missing
+  std::vector<std::vector<std::size_t>> frames = {};  ///< of each batch
+  std::vector<std::size_t> sizes = {};                ///< of each batch, one after another
+  std::size_t size = 200;         ///< of all batches, one after another; the last has what is left
+  trajectory_options align = {};  ///< of each batch
 };
 
-/// A batch of frames [begin, end) and how it lies in the world of the reference.
+/// A batch of frames and how it lies in the world of the reference.
 struct batch_alignment {
-  std::size_t begin;
-  std::size_t end;
-  std::optional<alignment> fit;     ///< nothing where the frames do not tell the transform
-  std::string degenerate;           ///< then why
-  std::optional<double> half_rmse;  ///< of every other inlier, fitted to the others
-  std::optional<double> seam;  ///< jump of the position error from the batch before to this one
+  std::vector<std::size_t> frames;        ///< of the associated trajectories, in the batch's order
+  std::vector<std::string> missing = {};  ///< names of the batch that no pose has
+  std::optional<alignment> fit = {};      ///< nothing where the frames do not tell the transform
+  std::string degenerate = {};            ///< then why
+  std::optional<double> seam =
+      {};  ///< jump of the position error from the batch before to this one
 };
 
-/// Aligns each of the sequential batches of associated trajectories on its own. A batch whose
-/// frames do not tell its transform is named, not guessed.
+/// Aligns each batch of associated trajectories on its own. A batch whose frames do not tell its
+/// transform is named, not guessed.
 ///
-/// Throws argument_error if the trajectories are not associated or the sizes do not add up to their
-/// length.
+/// Throws argument_error if the trajectories are not associated, the sizes do not add up to their
+/// length, a frame is in two batches or beyond the last, or names are given where poses have none.
 std::vector<batch_alignment> batches(const pose::trajectory& estimate,
                                      const pose::trajectory& reference,
                                      const batches_options& options = {});
 
-/// Each batch moved by its transform; the poses of degenerate batches become NaN, unregistered.
+/// Each batch moved by its transform; the poses of degenerate batches and of frames in no batch
+/// become NaN, unregistered.
 pose::trajectory transformed(const std::vector<batch_alignment>& batches,
                              pose::trajectory estimate);
 
@@ -1224,29 +1288,64 @@ inline std::vector<std::size_t> batch_sizes(std::size_t frames, const batches_op
   return sizes;
 }
 
-inline pose::trajectory slice(const pose::trajectory& t, std::size_t begin, std::size_t end) {
-  std::vector<std::size_t> indices(end - begin);
-  std::iota(indices.begin(), indices.end(), begin);
-  return select(t, indices);
+inline std::vector<batch_alignment> batches_of_sizes(std::size_t frames,
+                                                     const batches_options& options) {
+  std::vector<batch_alignment> out;
+  std::size_t begin = 0;
+  for (const std::size_t size : batch_sizes(frames, options)) {
+    out.push_back({.frames = std::vector<std::size_t>(size)});
+    std::iota(out.back().frames.begin(), out.back().frames.end(), begin);
+    begin += size;
+  }
+  return out;
 }
 
-/// Error of the odd frames of those chosen under a fit to the even ones.
-inline std::optional<double> half_rmse(const pose_fit& fit,
-                                       const std::vector<std::size_t>& chosen) {
-  std::vector<std::size_t> even, odd;
-  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
-  if (odd.empty()) return std::nullopt;
-  try {
-    const math::sim3 ref_from_est = fit(even);
-    double sse = 0;
-    for (const std::size_t i : odd) sse += std::pow(fit.residual(ref_from_est, i), 2);
-    return std::sqrt(sse / static_cast<double>(odd.size()));
-  } catch (const undefined_error&) {
-    return std::nullopt;
+inline std::vector<batch_alignment> batches_of_names(const pose::trajectory& estimate,
+                                                     const pose::trajectory& reference,
+                                                     const batches_options& options) {
+  const auto& names = reference.names.empty() ? estimate.names : reference.names;
+  if (names.empty()) throw argument_error("align::batches: by name, but no pose has one");
+  std::unordered_map<std::string, std::size_t> frame_of;
+  for (std::size_t i = 0; i < names.size(); ++i) frame_of.emplace(names[i], i);
+  std::vector<batch_alignment> out;
+  for (const std::vector<std::string>& batch : options.names) {
+    out.emplace_back();
+    for (const std::string& name : batch) {
+      const auto at = frame_of.find(name);
+      if (at == frame_of.end())
+        out.back().missing.push_back(name);
+      else
+        out.back().frames.push_back(at->second);
+    }
+  }
+  return out;
+}
+
+inline std::vector<batch_alignment> batch_lists(const pose::trajectory& estimate,
+                                                const pose::trajectory& reference,
+                                                const batches_options& options) {
+  if (!options.names.empty()) return batches_of_names(estimate, reference, options);
+  if (options.frames.empty()) return batches_of_sizes(estimate.size(), options);
+  std::vector<batch_alignment> out;
+  for (const std::vector<std::size_t>& frames : options.frames) out.push_back({.frames = frames});
+  return out;
+}
+
+/// Throws argument_error unless every frame exists and is in one batch at most.
+inline void check_batches(const std::vector<batch_alignment>& batches, std::size_t n) {
+  std::vector<bool> taken(n);
+  for (const batch_alignment& batch : batches) {
+    for (const std::size_t i : batch.frames) {
+      if (i >= n) {
+        throw argument_error(message("align::batches: frames below ", n, " expected, found ", i));
+      }
+      if (taken[i]) throw argument_error(message("align::batches: frame ", i, " comes twice"));
+      taken[i] = true;
+    }
   }
 }
 
-/// Errors of positions under a transform; NaN where a pose is not finite.
+/// Error of a position under a transform; NaN where a pose is not finite.
 inline Eigen::Vector3d position_error(const math::sim3& ref_from_est,
                                       const pose::trajectory& estimate,
                                       const pose::trajectory& reference,
@@ -1255,29 +1354,31 @@ inline Eigen::Vector3d position_error(const math::sim3& ref_from_est,
          reference.world_from_camera[i].translation;
 }
 
-inline batch_alignment align_batch(const pose::trajectory& estimate,
-                                   const pose::trajectory& reference,
-                                   std::size_t begin,
-                                   std::size_t end,
-                                   const trajectory_options& options) {
-  batch_alignment out{begin, end, {}, {}, {}, {}};
-  const pose::trajectory e = slice(estimate, begin, end), r = slice(reference, begin, end);
+inline void align_batch(const pose::trajectory& estimate,
+                        const pose::trajectory& reference,
+                        const trajectory_options& options,
+                        batch_alignment& batch) {
   try {
-    out.fit = trajectory(e, r, options);
+    batch.fit =
+        trajectory(select(estimate, batch.frames), select(reference, batch.frames), options);
+    for (std::size_t& i : batch.fit->outliers) i = batch.frames[i];
   } catch (const undefined_error& failure) {
-    out.degenerate = failure.what();
-    return out;
+    batch.degenerate = failure.what();
   }
-  const pose::registered_frames frames = pose::registered("align::batches", e, r);
-  const auto& outliers = out.fit->outliers;
-  std::vector<std::size_t> inliers;
-  for (std::size_t k = 0; k < frames.index.size(); ++k) {
-    if (!std::binary_search(outliers.begin(), outliers.end(), frames.index[k]))
-      inliers.push_back(k);
-  }
-  out.half_rmse = half_rmse(pose_fit(frames.estimate, frames.reference, options.fit), inliers);
-  for (std::size_t& i : out.fit->outliers) i += begin;
-  return out;
+}
+
+/// From the last frame of one batch to the first of the next.
+inline std::optional<double> seam_of(const batch_alignment& before,
+                                     const batch_alignment& batch,
+                                     const pose::trajectory& estimate,
+                                     const pose::trajectory& reference) {
+  if (!before.fit || !batch.fit) return std::nullopt;
+  const double jump =
+      (position_error(batch.fit->transform, estimate, reference, batch.frames.front()) -
+       position_error(before.fit->transform, estimate, reference, before.frames.back()))
+          .norm();
+  if (!std::isfinite(jump)) return std::nullopt;
+  return jump;
 }
 
 }  // namespace detail
@@ -1286,34 +1387,29 @@ inline std::vector<batch_alignment> batches(const pose::trajectory& estimate,
                                             const pose::trajectory& reference,
                                             const batches_options& options) {
   pose::check_associated("align::batches", estimate, reference);
-  std::vector<batch_alignment> out;
-  std::size_t begin = 0;
-  for (const std::size_t size : detail::batch_sizes(estimate.size(), options)) {
-    out.push_back(detail::align_batch(estimate, reference, begin, begin + size, options.align));
-    begin += size;
-  }
-  for (std::size_t k = 1; k < out.size(); ++k) {
-    if (!out[k - 1].fit || !out[k].fit) continue;
-    const std::size_t border = out[k].begin;
-    const double jump =
-        (detail::position_error(out[k].fit->transform, estimate, reference, border) -
-         detail::position_error(out[k - 1].fit->transform, estimate, reference, border - 1))
-            .norm();
-    if (std::isfinite(jump)) out[k].seam = jump;
-  }
+  std::vector<batch_alignment> out = detail::batch_lists(estimate, reference, options);
+  detail::check_batches(out, estimate.size());
+  for (batch_alignment& batch : out) detail::align_batch(estimate, reference, options.align, batch);
+  for (std::size_t k = 1; k < out.size(); ++k)
+    out[k].seam = detail::seam_of(out[k - 1], out[k], estimate, reference);
   return out;
 }
 
 inline pose::trajectory transformed(const std::vector<batch_alignment>& batches,
                                     pose::trajectory estimate) {
+  std::vector<bool> moved(estimate.size());
   for (const batch_alignment& batch : batches) {
-    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+    if (!batch.fit) continue;
+    for (const std::size_t i : batch.frames) {
       math::rigid3& pose = estimate.world_from_camera.at(i);
-      if (batch.fit)
-        pose = batch.fit->transform * pose;
-      else
-        pose.translation.setConstant(std::numeric_limits<double>::quiet_NaN());
+      pose = batch.fit->transform * pose;
+      moved[i] = true;
     }
+  }
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (!moved[i])
+      estimate.world_from_camera[i].translation.setConstant(
+          std::numeric_limits<double>::quiet_NaN());
   }
   return estimate;
 }

@@ -81,4 +81,48 @@ return aib.test {
     local sheet = aib.raster.contact_sheet({ picture, picture }, { columns = 2, width = 30 })
     t:equal(sheet.width, 2 * 36 + 6)
   end,
+  ["errors by label, for strata and any label image"] = function(t)
+    local estimate, reference = maps()
+    local labels = aib.raster.labels { { 0, 4 }, { 4, 0 } }
+    local errors = aib.depth.errors(estimate, reference, { labels = labels })
+    t:near(errors.by_label[0].mae, 1, 0)
+    t:near(errors.by_label[4].mae, 1, 0)
+    t:equal(errors.by_label[0].n_reference, 2)
+    local frames = aib.depth.accumulate():add(estimate, reference, { labels = labels })
+    t:equal(frames:labels(), { 0, 4 })
+    t:equal(frames:of_label(4):result().n_valid, 2)
+    t:near(aib.depth.srmse(estimate, reference), errors.srmse, 0)
+    t:equal(aib.depth.strata(aib.depth.map { { 9, 1, 9 } }):at(2, 1), 3)
+    t:raises("label image", aib.depth.errors, estimate, reference, { labels = aib.raster.labels { { 1 } } })
+  end,
+
+  ["errors at the surface, of normals, planes and contours"] = function(t)
+    local rows, far = {}, {}
+    for y = 1, 8 do
+      rows[y], far[y] = {}, {}
+      for x = 1, 8 do rows[y][x], far[y][x] = 10, 10.1 end
+    end
+    local reference, estimate = aib.depth.map(rows), aib.depth.map(far)
+    local camera = aib.math.camera { width = 80, height = 80, parameters = { 100, 100, 40, 40 } }
+    local surface = aib.depth.surface_errors(estimate, reference, camera, { tau = { 0.5, 2 } })
+    t:near(surface.distance.median, 0.1, 1e-5)
+    t:near(surface.mean_gsd, 0.1, 1e-12)
+    t:equal({ surface.within[0.5], surface.within[2] }, { 0.0, 1.0 })
+    local normals = aib.depth.normal_errors(estimate, reference, camera)
+    t:near(normals.mean_deg, 0, 1e-3)
+    t:equal(normals.below[11.25], 1.0)
+    local wall = {}
+    for y = 1, 8 do wall[y] = { 1, 1, 1, 1, 1, 1, 1, 1 } end
+    local planes = aib.depth.plane_errors(estimate, reference, camera, aib.raster.labels(wall))
+    t:near(planes[1].offset, 0.1, 1e-5)
+    t:equal(aib.depth.boundary_f1(estimate, reference), 0.0)
+  end,
+
+  ["risk falls where a confidence knows"] = function(t)
+    local estimate, reference = aib.depth.map { { 1, 2, 4 } }, aib.depth.map { { 1, 1, 1 } }
+    local curve = aib.depth.risk_coverage(estimate, reference, aib.depth.map { { 9, 5, 1 } }, { steps = 3 })
+    t:equal(curve.risk, { 0.0, 0.5, 4 / 3 })
+    t:equal(curve.ause, 0.0)
+    t:raises("confidence map", aib.depth.risk_coverage, estimate, reference, aib.depth.map { { 1 } })
+  end,
 }

@@ -8,6 +8,7 @@
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/errors.hpp>
 #include <aib/depth/fit.hpp>
+#include <aib/depth/label_sums.hpp>
 #include <aib/raster/image.hpp>
 #include <aib/raster/view.hpp>
 
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +29,7 @@ struct frame_record {
   error_sums sums = {};
   affine transform = {};
   std::optional<error_summary> errors = {};
+  label_sums by_label = {};  ///< of a frame that came with labels
 };
 
 /// The errors of many frames, in both ways of taking them together.
@@ -45,7 +48,7 @@ struct frames_summary {
 /// those of a: the result is that of one run in that order, to the last bit.
 class accumulator {
  public:
-  /// The mask of the options is not used: each frame brings its own.
+  /// Mask and labels of the options are not used: each frame brings its own.
   explicit accumulator(const error_options& options = {}) : options_(options) {}
 
   /// Adds a frame; one without a valid pixel is kept as such. Throws argument_error if sizes
@@ -54,9 +57,16 @@ class accumulator {
   void add(std::string name,
            raster::view<const Estimate> estimate,
            raster::view<const Reference> reference,
-           raster::view<const std::uint8_t> mask = {});
+           raster::view<const std::uint8_t> mask = {},
+           raster::view<const std::uint16_t> labels = {});
 
   accumulator& operator+=(const accumulator& other);
+
+  /// The labels that occur in any frame, sorted.
+  [[nodiscard]] std::vector<std::uint16_t> labels() const;
+
+  /// The same over the pixels of one label alone, without the frames that have none of them.
+  [[nodiscard]] accumulator of_label(std::uint16_t label) const;
 
   /// The frames in the order in which they were added.
   [[nodiscard]] const std::vector<frame_record>& frames() const { return frames_; }
@@ -71,8 +81,8 @@ class accumulator {
   std::vector<frame_record> frames_;
 };
 
-/// Indices of the frames, the largest value of `field` first; frames without a valid pixel last, in
-/// their order.
+/// Indices of the frames, the worst value of `field` first: the largest, of shares the smallest.
+/// Frames without a valid pixel are last, in their order.
 [[nodiscard]] std::vector<std::size_t> worst_first(
     const std::vector<frame_record>& frames, double error_summary::*field = &error_summary::srmse);
 
@@ -82,6 +92,7 @@ struct frame {
   depth_map estimate;
   depth_map reference;
   raster::image<std::uint8_t> mask = {};
+  raster::image<std::uint16_t> labels = {};
 };
 
 /// What one fit of scale and shift is over.
@@ -123,7 +134,8 @@ template <class Load>
     accumulator one(errors);
     frame f = load(c.begin);
     one.add(std::move(f.name), std::as_const(f.estimate.values).view(),
-            std::as_const(f.reference.values).view(), std::as_const(f.mask).view());
+            std::as_const(f.reference.values).view(), std::as_const(f.mask).view(),
+            std::as_const(f.labels).view());
     return one;
   };
   const auto combine = [](accumulator total, const accumulator& part) { return total += part; };
@@ -135,13 +147,37 @@ template <class Estimate, class Reference>
 void accumulator::add(std::string name,
                       raster::view<const Estimate> estimate,
                       raster::view<const Reference> reference,
-                      raster::view<const std::uint8_t> mask) {
+                      raster::view<const std::uint8_t> mask,
+                      raster::view<const std::uint16_t> labels) {
   error_options options = options_;
   options.mask = mask;
-  const frame_sums measured = measure(estimate, reference, options);
-  frame_record record{std::move(name), measured.sums, measured.transform};
-  if (record.sums.log_ratio.count() > 0) record.errors = summarize(record.sums, record.transform);
-  frames_.push_back(std::move(record));
+  options.labels = labels;
+  frame_sums measured = measure(estimate, reference, options);
+  frames_.push_back({.name = std::move(name),
+                     .sums = measured.sums,
+                     .transform = measured.transform,
+                     .errors = record_of(measured.sums, measured.transform).errors,
+                     .by_label = std::move(measured.by_label)});
+}
+
+inline std::vector<std::uint16_t> accumulator::labels() const {
+  std::set<std::uint16_t> all;
+  for (const frame_record& f : frames_)
+    for (const auto& [label, sums] : f.by_label) all.insert(label);
+  return {all.begin(), all.end()};
+}
+
+inline accumulator accumulator::of_label(std::uint16_t label) const {
+  accumulator part(options_);
+  for (const frame_record& f : frames_) {
+    const auto found = f.by_label.find(label);
+    if (found == f.by_label.end()) continue;
+    part.frames_.push_back({.name = f.name,
+                            .sums = found->second,
+                            .transform = f.transform,
+                            .errors = record_of(found->second, f.transform).errors});
+  }
+  return part;
 }
 
 inline accumulator& accumulator::operator+=(const accumulator& other) {
@@ -192,9 +228,10 @@ inline std::vector<std::size_t> worst_first(const std::vector<frame_record>& fra
                                             double error_summary::*field) {
   std::vector<std::size_t> order(frames.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const double sign = is_share(field) ? -1 : 1;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!frames[a].errors || !frames[b].errors) return frames[a].errors && !frames[b].errors;
-    return (*frames[a].errors).*field > (*frames[b].errors).*field;
+    return sign * ((*frames[a].errors).*field) > sign * ((*frames[b].errors).*field);
   });
   return order;
 }

@@ -40,6 +40,12 @@ struct pixel_rules {
   double clamp_log = 0;  ///< least estimate within logarithms, other errors take it as it is
 };
 
+/// Whether the rules make another number of a valid estimate.
+[[nodiscard]] constexpr bool changes_estimates(const pixel_rules& r) {
+  return r.transform != affine{} || r.clamp_min > 0 || r.clamp_log > 0 ||
+         r.clamp_max < std::numeric_limits<double>::infinity();
+}
+
 /// What the depth errors of a set of pixels are made of. Mergeable: `a += b`.
 ///
 /// The log ratio ln(reference / estimate) is kept as moments, so that a small spread about a large
@@ -53,6 +59,7 @@ struct error_sums {
   double squared_difference = 0;                  ///< sum (estimate - reference)^2
   double abs_relative = 0;                        ///< sum |estimate - reference| / reference
   double squared_relative = 0;                    ///< sum (estimate - reference)^2 / reference
+  double abs_inverse = 0;                         ///< sum |1 / estimate - 1 / reference|
   double squared_inverse = 0;                     ///< sum (1 / estimate - 1 / reference)^2
   std::array<std::uint64_t, 3> below_delta = {};  ///< ratios strictly below 1.25, 1.25^2, 1.25^3
 
@@ -68,9 +75,22 @@ inline error_sums& error_sums::operator+=(const error_sums& other) {
   squared_difference += other.squared_difference;
   abs_relative += other.abs_relative;
   squared_relative += other.squared_relative;
+  abs_inverse += other.abs_inverse;
   squared_inverse += other.squared_inverse;
   for (std::size_t k = 0; k < 3; ++k) below_delta[k] += other.below_delta[k];
   return *this;
+}
+
+/// Throws argument_error unless `other` has the size of the estimate.
+template <class Estimate, class Other>
+void check_size(std::string_view function,
+                raster::view<const Estimate> estimate,
+                std::string_view thing,
+                raster::view<const Other> other) {
+  if (estimate.width == other.width && estimate.height == other.height) return;
+  throw argument_error(message(function, ": the estimate is ", estimate.width, "x", estimate.height,
+                               ", the ", thing, " ", other.width, "x", other.height,
+                               ": downsample one to the other first"));
 }
 
 /// Throws argument_error unless both maps, and the mask where there is one, have one size.
@@ -79,15 +99,8 @@ void check_sizes(std::string_view function,
                  raster::view<const Estimate> estimate,
                  raster::view<const Reference> reference,
                  raster::view<const std::uint8_t> mask = {}) {
-  const auto fail = [&](std::string_view thing, std::size_t width, std::size_t height) {
-    throw argument_error(message(function, ": the estimate is ", estimate.width, "x",
-                                 estimate.height, ", the ", thing, " ", width, "x", height,
-                                 ": downsample one to the other first"));
-  };
-  if (estimate.width != reference.width || estimate.height != reference.height)
-    fail("reference", reference.width, reference.height);
-  if (mask.data && (estimate.width != mask.width || estimate.height != mask.height))
-    fail("mask", mask.width, mask.height);
+  check_size(function, estimate, "reference", reference);
+  if (mask.data) check_size(function, estimate, "mask", mask);
 }
 
 namespace detail {
@@ -116,11 +129,16 @@ f64x4 load4(const T* p, std::size_t n) {
 
 inline namespace AIB_ISA {
 
+/// Which sums are wanted: those of the log ratio (and the counts) take half the time.
+enum class error_set { all, log_ratio };
+
 /// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
 /// bits.
+template <error_set Set = error_set::all>
 class error_adder {
  public:
-  explicit error_adder(const pixel_rules& rules) : rules_(rules) {}
+  explicit error_adder(const pixel_rules& rules)
+      : rules_(rules), changes_estimate_(changes_estimates(rules)) {}
 
   /// Adds a row; `mask` is null or as long, of which 0 leaves a pixel out.
   template <class Estimate, class Reference>
@@ -145,8 +163,10 @@ class error_adder {
     f64x4 weight;  ///< 1 where the pixel counts, else 0
   };
 
-  pixels select(f64x4 estimate, f64x4 reference, f64x4 inside);
+  f64x4 transformed(f64x4 raw) const;
+  pixels select(f64x4 estimate, f64x4 reference, const std::uint8_t* mask, std::size_t n);
   f64x4 add(const pixels& p);
+  void add_errors(const pixels& p, f64x4 log_ratio);
   void add_log_ratios(const block& b, std::size_t n);
 
   static f64x4 number(double x) { return f64x4::broadcast(x); }
@@ -154,6 +174,7 @@ class error_adder {
   static f64x4 absolute(f64x4 a) { return max(a, number(0) - a); }
 
   pixel_rules rules_;
+  bool changes_estimate_;  ///< by transform or clamp
   stats::moments log_ratio_;
   f64x4 n_reference_ = number(0);
   f64x4 n_estimate_ = number(0);
@@ -162,22 +183,24 @@ class error_adder {
   f64x4 squared_difference_ = number(0);
   f64x4 abs_relative_ = number(0);
   f64x4 squared_relative_ = number(0);
+  f64x4 abs_inverse_ = number(0);
   f64x4 squared_inverse_ = number(0);
   f64x4 below_delta_[3] = {number(0), number(0), number(0)};
 };
 
+template <error_set Set>
 template <class Estimate, class Reference>
-void error_adder::add(std::span<const Estimate> estimate,
-                      std::span<const Reference> reference,
-                      const std::uint8_t* mask) {
+void error_adder<Set>::add(std::span<const Estimate> estimate,
+                           std::span<const Reference> reference,
+                           const std::uint8_t* mask) {
   block b;
   for (std::size_t first = 0; first < estimate.size(); first += block::size) {
     const std::size_t n = std::min(block::size, estimate.size() - first);
     for (std::size_t i = 0; i < n; i += 4) {
       const std::size_t at = first + i;
-      const f64x4 inside = mask ? detail::load4(mask + at, n - i) : number(1);
-      const pixels p = select(detail::load4(estimate.data() + at, n - i),
-                              detail::load4(reference.data() + at, n - i), inside);
+      const pixels p =
+          select(detail::load4(estimate.data() + at, n - i),
+                 detail::load4(reference.data() + at, n - i), mask ? mask + at : nullptr, n - i);
       b.log_ratio[i / 4] = add(p);
       b.weight[i / 4] = p.weight;
     }
@@ -185,15 +208,32 @@ void error_adder::add(std::span<const Estimate> estimate,
   }
 }
 
+template <error_set Set>
+f64x4 error_adder<Set>::transformed(f64x4 raw) const {
+  const f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
+  return min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
+}
+
 /// Applies the rules.
-inline error_adder::pixels error_adder::select(f64x4 raw, f64x4 reference, f64x4 inside) {
+template <error_set Set>
+typename error_adder<Set>::pixels error_adder<Set>::select(f64x4 raw,
+                                                           f64x4 reference,
+                                                           const std::uint8_t* mask,
+                                                           std::size_t n) {
   const f64x4 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
-  f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
-  e = min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
-  // min and max give their second argument, the raw depth, where it is NaN.
-  const f64x4 has_estimate = inside * is_less(zero, min(e, raw)) * is_less(max(e, raw), inf);
-  const f64x4 has_reference =
-      inside * is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
+  f64x4 e = raw;
+  f64x4 has_estimate = is_less(zero, raw) * is_less(raw, inf);
+  f64x4 has_reference =
+      is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
+  if (changes_estimate_) {
+    e = transformed(raw);
+    has_estimate = has_estimate * is_less(zero, e) * is_less(e, inf);
+  }
+  if (mask) {
+    const f64x4 inside = detail::load4(mask, n);
+    has_estimate = has_estimate * inside;
+    has_reference = has_reference * inside;
+  }
   n_estimate_ = n_estimate_ + has_estimate;
   n_reference_ = n_reference_ + has_reference;
   const f64x4 weight = has_estimate * has_reference;
@@ -203,18 +243,27 @@ inline error_adder::pixels error_adder::select(f64x4 raw, f64x4 reference, f64x4
 }
 
 /// Adds all but the moments of the log ratios, and returns those.
-inline f64x4 error_adder::add(const pixels& p) {
+template <error_set Set>
+f64x4 error_adder<Set>::add(const pixels& p) {
+  const f64x4 e = changes_estimate_ ? max(p.estimate, number(rules_.clamp_log)) : p.estimate;
+  const f64x4 log_ratio = p.weight * math::log_ratio(p.reference, e);
+  if constexpr (Set == error_set::all) add_errors(p, log_ratio);
+  return log_ratio;
+}
+
+template <error_set Set>
+void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
   const f64x4 e = p.estimate, r = p.reference;
-  const f64x4 log_ratio = p.weight * math::log_ratio(r, max(e, number(rules_.clamp_log)));
   const f64x4 per_reference = number(1) / r;
   const f64x4 difference = absolute(e - r);
   const f64x4 relative = difference * per_reference;
-  const f64x4 inverse = number(1) / e - per_reference;
+  const f64x4 inverse = absolute(number(1) / e - per_reference);
   abs_log_ = abs_log_ + absolute(log_ratio);
   abs_difference_ = abs_difference_ + difference;
   squared_difference_ = squared_difference_ + difference * difference;
   abs_relative_ = abs_relative_ + relative;
   squared_relative_ = squared_relative_ + difference * relative;
+  abs_inverse_ = abs_inverse_ + inverse;
   squared_inverse_ = squared_inverse_ + inverse * inverse;
   // Without division: 1.25^k is exact in binary, and so is its product with a float.
   const f64x4 larger = max(e, r), smaller = min(e, r);
@@ -224,10 +273,10 @@ inline f64x4 error_adder::add(const pixels& p) {
   below_delta_[0] = below_delta_[0] + below(1.25);
   below_delta_[1] = below_delta_[1] + below(1.5625);
   below_delta_[2] = below_delta_[2] + below(1.953125);
-  return log_ratio;
 }
 
-inline void error_adder::add_log_ratios(const block& b, std::size_t n) {
+template <error_set Set>
+void error_adder<Set>::add_log_ratios(const block& b, std::size_t n) {
   f64x4 counts = number(0), total = number(0), squares = number(0);
   for (std::size_t i = 0; 4 * i < n; ++i) {
     counts = counts + b.weight[i];
@@ -242,7 +291,8 @@ inline void error_adder::add_log_ratios(const block& b, std::size_t n) {
   log_ratio_ += stats::moments::from(static_cast<std::uint64_t>(count), mean, sum(squares));
 }
 
-inline error_sums error_adder::result() const {
+template <error_set Set>
+error_sums error_adder<Set>::result() const {
   const auto count = [](f64x4 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
   return {.log_ratio = log_ratio_,
           .n_reference = count(n_reference_),
@@ -252,13 +302,14 @@ inline error_sums error_adder::result() const {
           .squared_difference = sum(squared_difference_),
           .abs_relative = sum(abs_relative_),
           .squared_relative = sum(squared_relative_),
+          .abs_inverse = sum(abs_inverse_),
           .squared_inverse = sum(squared_inverse_),
           .below_delta = {count(below_delta_[0]), count(below_delta_[1]), count(below_delta_[2])}};
 }
 
 /// The sums over all pixels of a frame after one transform; nothing is fitted. Bit-identical for
 /// any number of threads and instruction set. Throws argument_error if the sizes differ.
-template <class Estimate, class Reference>
+template <error_set Set = error_set::all, class Estimate, class Reference>
 error_sums sum_errors(raster::view<const Estimate> estimate,
                       raster::view<const Reference> reference,
                       const pixel_rules& rules,
@@ -268,7 +319,7 @@ error_sums sum_errors(raster::view<const Estimate> estimate,
   constexpr std::size_t pixels_a_chunk = 1 << 16;
   const std::size_t rows = estimate.width ? 1 + pixels_a_chunk / estimate.width : 1;
   const auto sums_of = [&](const chunk& c) {
-    error_adder adder(rules);
+    error_adder<Set> adder(rules);
     for (std::size_t y = c.begin; y < c.end; ++y)
       adder.add(estimate.row(y), reference.row(y), mask.data ? mask.row(y).data() : nullptr);
     return adder.result();

@@ -7,6 +7,7 @@
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/error_sums.hpp>
 #include <aib/depth/fit.hpp>
+#include <aib/depth/label_sums.hpp>
 #include <aib/raster/view.hpp>
 
 #include <array>
@@ -14,7 +15,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 namespace aib::depth {
@@ -25,6 +28,7 @@ struct error_options {
   double min = 0;                                        ///< a reference counts above it, exclusive
   double max = std::numeric_limits<double>::infinity();  ///< and below it, exclusive
   raster::view<const std::uint8_t> mask = {};            ///< none, or 0 where a pixel is left out
+  raster::view<const std::uint16_t> labels = {};         ///< none, or what each pixel shows
   crop_rule crop = crop_rule::none;                      ///< the rest is left out
   affine transform = {};  ///< of a batch or sequence (see fitter), where nothing is aligned here
   double clamp_min = 0;   ///< smaller estimates become this
@@ -47,6 +51,7 @@ struct error_summary {
   double rmse_log;     ///< root of mean d^2
   double log10;        ///< mean |log10 e - log10 r|
   double irmse;        ///< root of mean (1 / e - 1 / r)^2
+  double imae;         ///< mean |1 / e - 1 / r|
   double delta1;       ///< share with max(e / r, r / e) < 1.25
   double delta2;       ///< ... < 1.25^2
   double delta3;       ///< ... < 1.25^3
@@ -65,7 +70,7 @@ struct error_field {
 };
 
 /// Every number of error_summary but the counts, in its order: for tables and means.
-inline constexpr std::array<error_field, 16> error_fields{{
+inline constexpr std::array<error_field, 17> error_fields{{
     {"srmse", &error_summary::srmse},
     {"si_log_rmse", &error_summary::si_log_rmse},
     {"silog", &error_summary::silog},
@@ -76,6 +81,7 @@ inline constexpr std::array<error_field, 16> error_fields{{
     {"rmse_log", &error_summary::rmse_log},
     {"log10", &error_summary::log10},
     {"irmse", &error_summary::irmse},
+    {"imae", &error_summary::imae},
     {"delta1", &error_summary::delta1},
     {"delta2", &error_summary::delta2},
     {"delta3", &error_summary::delta3},
@@ -83,6 +89,12 @@ inline constexpr std::array<error_field, 16> error_fields{{
     {"scale", &error_summary::scale},
     {"shift", &error_summary::shift},
 }};
+
+/// Whether a number is a share, of which more is better.
+[[nodiscard]] constexpr bool is_share(double error_summary::*field) {
+  return field == &error_summary::delta1 || field == &error_summary::delta2 ||
+         field == &error_summary::delta3 || field == &error_summary::coverage;
+}
 
 /// The errors that sums amount to. Throws undefined_error, with the counts, if no pixel was valid.
 error_summary summarize(const error_sums& sums, const affine& transform = {});
@@ -131,6 +143,7 @@ inline error_summary summarize(const error_sums& sums, const affine& transform) 
       .rmse_log = std::sqrt(sums.log_ratio.mean_square()),
       .log10 = sums.abs_log / n / std::numbers::ln10,
       .irmse = std::sqrt(sums.squared_inverse / n),
+      .imae = sums.abs_inverse / n,
       .delta1 = share(0),
       .delta2 = share(1),
       .delta3 = share(2),
@@ -148,18 +161,21 @@ inline error_summary summarize(const error_sums& sums, const affine& transform) 
 struct frame_sums {
   error_sums sums;
   affine transform = {};
+  label_sums by_label = {};  ///< where the options have labels
 };
 
 /// A frame without a valid pixel has the identity for a fit. Throws argument_error if the sizes
 /// differ, or if the options have both a fit and a transform.
-template <class Estimate, class Reference>
+template <error_set Set = error_set::all, class Estimate, class Reference>
 frame_sums measure(raster::view<const Estimate> estimate,
                    raster::view<const Reference> reference,
                    const error_options& options) {
   check_sizes("depth::errors", estimate, reference, options.mask);
+  if (options.labels.data) check_size("depth::errors", estimate, "label image", options.labels);
   estimate = cropped(estimate, options.crop);
   reference = cropped(reference, options.crop);
   const raster::view<const std::uint8_t> mask = cropped(options.mask, options.crop);
+  const raster::view<const std::uint16_t> labels = cropped(options.labels, options.crop);
   pixel_rules rules = rules_of(options);
   if (options.align != alignment::none) {
     if (options.transform != affine{})
@@ -168,7 +184,19 @@ frame_sums measure(raster::view<const Estimate> estimate,
     fit.add(estimate, reference, mask);
     if (fit.n_valid() > 0) rules.transform = fit.result();
   }
-  return {sum_errors(estimate, reference, rules, mask, options.threads), rules.transform};
+  frame_sums frame{sum_errors<Set>(estimate, reference, rules, mask, options.threads),
+                   rules.transform};
+  if (labels.data) frame.by_label = sum_errors_by_label(estimate, reference, labels, rules, mask);
+  return frame;
+}
+
+/// The srmse of `errors` alone, to the same bits, in half the time. Throws as `errors` does.
+template <class Estimate, class Reference>
+double srmse(raster::view<const Estimate> estimate,
+             raster::view<const Reference> reference,
+             const error_options& options = {}) {
+  const frame_sums frame = measure<error_set::log_ratio>(estimate, reference, options);
+  return summarize(frame.sums, frame.transform).srmse;
 }
 
 template <class Estimate, class Reference>
@@ -177,6 +205,33 @@ error_summary errors(raster::view<const Estimate> estimate,
                      const error_options& options) {
   const frame_sums frame = measure(estimate, reference, options);
   return summarize(frame.sums, frame.transform);
+}
+
+/// What is known of a set of pixels: its sums, and its errors where it has a valid pixel.
+struct error_record {
+  error_sums sums = {};
+  std::optional<error_summary> errors = {};
+};
+
+[[nodiscard]] inline error_record record_of(const error_sums& sums, const affine& transform) {
+  error_record record{sums};
+  if (sums.log_ratio.count() > 0) record.errors = summarize(sums, transform);
+  return record;
+}
+
+/// Errors of the pixels of each label that occurs in `options.labels`: of glass, frame, truss ...
+/// Where something is fitted, it is fitted to the whole frame. Throws argument_error where there
+/// are no labels, and as errors does.
+template <class Estimate, class Reference>
+std::map<std::uint16_t, error_record> errors_by_label(raster::view<const Estimate> estimate,
+                                                      raster::view<const Reference> reference,
+                                                      const error_options& options) {
+  if (!options.labels.data) throw argument_error("depth::errors_by_label: labels expected");
+  const frame_sums frame = measure(estimate, reference, options);
+  std::map<std::uint16_t, error_record> records;
+  for (const auto& [label, sums] : frame.by_label)
+    records.emplace(label, record_of(sums, frame.transform));
+  return records;
 }
 
 template <class Estimate, class Reference>

@@ -97,7 +97,7 @@ void fitter::add(raster::view<const Estimate> estimate,
   check_sizes("depth::fitter", estimate, reference, mask);
   if (kind_ == alignment::log) {
     const pixel_rules valid = {.min = rules_.min, .max = rules_.max};
-    log_ratio_ += sum_errors(estimate, reference, valid, mask).log_ratio;
+    log_ratio_ += sum_errors<error_set::log_ratio>(estimate, reference, valid, mask).log_ratio;
   } else if (kind_ != alignment::none) {
     for (std::size_t y = 0; y < estimate.height; ++y)
       add_row(estimate.row(y), reference.row(y), mask.data ? mask.row(y).data() : nullptr);
