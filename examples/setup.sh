@@ -45,12 +45,14 @@ clang-format         program clang-format
 lua-check            program luacheck
 cmake                program cmake
 colmap               program colmap
+python3-matplotlib   python matplotlib
 '
 
 is_here() {  # is_here KIND NAME [VERSION]
   case $1 in
     program) command -v "$2" ;;
     module) pkg-config --exists "$2${3:+ >= $3}" || [ -d "subprojects/$2" ] ;;
+    python) /usr/bin/python3 -c "import $2" ;;
     header) echo "#include <$2>" | "${CXX:-c++}" -x c++ -E - ;;
   esac >/dev/null 2>&1
 }
