@@ -26,7 +26,7 @@ local suggest = require "aib.suggest"
 
 local M = {}
 
-local function adapter(name) return require("aib.methods." .. name) end
+local function adapter(name) return (require("aib.methods." .. name)) end
 
 --- In the order in which they are asked: those with the surest signs first.
 local adapters = {
@@ -85,8 +85,8 @@ local function find(folder)
     local why = known.find(folder)
     if why then return known, why end
   end
-  failure.raise("format", ("%s: nothing of a known method; it is told by kind or described by layout (known: %s)"):format(
-    folder, table.concat(M.kinds(), ", ")))
+  failure.raise("format", ("%s: nothing of a known method (%s); a layout describes any other"):format(folder,
+    table.concat(M.kinds(), ", ")))
 end
 
 --- The adapter and why it was chosen; `kind` names it.
@@ -160,7 +160,8 @@ function M.open(folder, options)
   options = options or {}
   suggest.check_keys("aib.method.open", options, option_fields, 2)
   if options.confidence and not confidence_rules[options.confidence] then
-    error(("aib.method.open: confidence: raw, sigmoid or percentile expected, found '%s'"):format(options.confidence), 2)
+    error(("aib.method.open: confidence: raw, sigmoid or percentile expected, found '%s'"):format(
+      options.confidence), 2)
   end
   if not aib.system.is_folder(folder) then failure.raise("io", folder .. ": no such folder") end
   local folders = folders_of(folder, options.batches or "^batch_(%d+)$")
@@ -182,7 +183,7 @@ function M.open(folder, options)
   return method
 end
 
---- Whether the poses are the true ones, as they are where a method was given them: no error of them means anything then.
+--- Whether the poses are the true ones, as they are where a method was given them: no error of them means anything.
 --- They agree to a millionth of the size of the scene and a thousandth of a degree.
 function M.poses_are_given(est, ref)
   local paired, truth = aib.pose.associate(est, ref, { by = "name" })

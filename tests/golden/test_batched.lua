@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- What exporters of DA3, VGGT, pi3, CUT3R and MonST3R left, batch by batch, gives the numbers that numpy, scipy and evo
---- gave: transforms, position errors, AUC, focal lengths, depth and clouds.
+--- What exporters of DA3, VGGT, pi3, CUT3R and MonST3R left, batch by batch, gives the numbers that numpy, scipy and
+--- evo gave: transforms, position errors, AUC, focal lengths, depth and clouds.
 local aib = require "aib"
 local support = require "support"
 

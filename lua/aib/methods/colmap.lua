@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- COLMAP, GLOMAP and exports in their format (VGGT, DA3): a model, or numbered ones of which the largest is taken, with
---- stereo/depth_maps and fused.ply of the dense step where they are there.
+--- COLMAP, GLOMAP and exports in their format (VGGT, DA3): a model, or numbered ones of which the largest is taken,
+--- with stereo/depth_maps and fused.ply of the dense step where they are there.
 ---
 ---   maps   "geometric" | "photometric": which depth maps; default: geometric ones where there are any
 local aib = require "aib"

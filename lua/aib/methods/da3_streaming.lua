@@ -26,7 +26,7 @@ return {
       names = names, named = told, rule = "raw", depth = map "depth", confidence = map "conf",
       trajectory = aib.io.read_trajectory(folder, { names = names }),
       cameras = kit.exists(folder, "intrinsic.txt") and
-        aib.io.read_cameras(folder, { names = names, width = first.width, height = first.height }) or nil,
+        kit.sized(aib.io.read_cameras(folder, { names = names }), first) or nil,
       points = aib.system.is_file(combined) and kit.cloud(combined) or nil,
     }
   end,

@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- VGGT: the predictions.npz of its demo. Poses are camera_from_world, confidences 1 + exp(x). Its COLMAP export is read
---- as COLMAP.
+--- VGGT: the predictions.npz of its demo. Poses are camera_from_world, confidences 1 + exp(x). Its COLMAP export is
+--- read as COLMAP.
 local kit = require "aib.methods.kit"
 
 return {
