@@ -11,11 +11,14 @@
 #include <aib/cloud/outliers.hpp>
 #include <aib/cloud/positions.hpp>
 #include <aib/cloud/transform.hpp>
+#include <aib/io/npy.hpp>
+#include <aib/stats/histogram.hpp>
 
 #include "kit.hpp"
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -142,16 +145,42 @@ cloud::polygon_volume polygon_from(const sol::table& t) {
           vector_in<std::vector<Eigen::Vector3d>>(t, "bounding_polygon", expected)};
 }
 
+cloud::half_space half_space_from(const sol::table& t) {
+  return {vector_in<Eigen::Vector4d>(t, "plane", "a plane { plane = {a, b, c, d} }")};
+}
+
+/// Whether each number is not 0.
+std::vector<std::uint8_t> is_set(const io::array& cells) {
+  std::vector<std::uint8_t> set;
+  for (const float v : cells.values<float>()) set.push_back(v != 0);
+  return set;
+}
+
+cloud::occupancy_grid grid_from(const sol::table& t) {
+  constexpr auto expected = "a grid { grid = array, min = {x, y, z}, resolution = number }";
+  const auto* cells = get_if<io::array>(t.get<sol::object>("grid"));
+  if (!cells || cells->shape.size() != 3)
+    throw argument_error(
+        message("aib.cloud.crop: ", expected, " expected, the array of X x Y x Z"));
+  return {vector_in<Eigen::Vector3d>(t, "min", expected),
+          vector_in<double>(t, "resolution", expected),
+          {cells->shape[0], cells->shape[1], cells->shape[2]},
+          is_set(*cells)};
+}
+
 cloud::cloud crop(const cloud::cloud& c, const sol::table& volume) {
   const auto has = [&](const char* name) {
     return volume.get<sol::object>(name).get_type() != sol::type::lua_nil;
   };
+  if (has("grid")) return cloud::crop(c, grid_from(volume));
+  if (has("plane")) return cloud::crop(c, half_space_from(volume));
   if (has("min") || has("max")) return cloud::crop(c, box_from(volume));
   if (has("centre") || has("size")) return cloud::crop(c, oriented_box_from(volume));
   if (has("bounding_polygon")) return cloud::crop(c, polygon_from(volume));
   throw argument_error(
-      "aib.cloud.crop: a box (min, max), an oriented box (centre, size, rotation) or a polygon "
-      "volume (bounding_polygon ...) expected");
+      "aib.cloud.crop: a box (min, max), an oriented box (centre, size, rotation), a polygon "
+      "volume "
+      "(bounding_polygon ...), a plane or a grid expected");
 }
 
 void bind_cloud_type(lua_State* state) {
@@ -188,6 +217,16 @@ void bind_distances_type(lua_State* state) {
       .method("rmse", {}, [](const distances& d) { return d.rmse(); })
       .method("max", {}, [](const distances& d) { return d.max(); })
       .method("quantile", {"q"}, [](const distances& d, double q) { return d.quantile(q); })
+      .method("histogram", {"options"},
+              [](lua_State* l, const distances& d, options& o) {
+                const double high = o.number("max", 0);
+                const auto bins = o.count("bins", 100);
+                o.done();
+                const stats::histogram counts = d.histogram(high, bins);
+                record r(l);
+                r.set("counts", counts.counts()).set("above", counts.above());
+                return r.set("width", high / static_cast<double>(bins));
+              })
       .method("share_below", {"tau"},
               [](const distances& d, double tau) { return d.share_below(tau); })
       .method("share_beyond", {}, [](const distances& d) { return d.share_beyond(); });

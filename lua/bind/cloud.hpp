@@ -3,16 +3,18 @@
 #pragma once
 
 #include <aib/cloud/box.hpp>
+#include <aib/cloud/by_label.hpp>
 #include <aib/cloud/compare.hpp>
 #include <aib/cloud/distances.hpp>
 
 #include "kit.hpp"
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace aib::bind {
 
-// What the bindings of clouds and of meshes share; defined in cloud.cpp.
+// What the bindings of clouds and of meshes share; defined in cloud.cpp and cloud_scores.cpp.
 
 /// 1204331 as "1 204 331".
 std::string grouped(std::size_t n);
@@ -24,6 +26,11 @@ std::string extent_text(const cloud::box& box);
 record as_record(lua_State* state, const cloud::box& box);
 
 record as_record(lua_State* state, const cloud::comparison& c);
+
+/// A comparison for each label that both clouds have points of, else the numbers of points alone.
+std::vector<record> as_records(lua_State* state,
+                               const std::vector<cloud::label_distances>& labels,
+                               const std::vector<double>& tau);
 
 /// max_distance and rule.
 cloud::distance_options distance_options(options& o, const session& s);

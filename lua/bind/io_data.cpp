@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/distances.hpp>
+#include <aib/cloud/offsets.hpp>
 #include <aib/io/cloud.hpp>
 #include <aib/io/depth.hpp>
 #include <aib/io/frame_stack.hpp>
@@ -72,10 +73,12 @@ class scalar_columns {
     for (const auto& [key, value] : *table) {
       const auto column = read_if<std::string>(key);
       auto* distances = get_if<cloud::distances>(value);
+      auto* offsets = get_if<cloud::offsets>(value);
       auto numbers = read_if<std::vector<float>>(value);
-      if (!column || (!distances && !numbers))
-        o.reject(name, "a table from names to distances or lists of numbers expected");
+      if (!column || (!distances && !offsets && !numbers))
+        o.reject(name, "a table from names to distances, offsets or lists of numbers expected");
       if (distances) numbers.emplace(distances->values().begin(), distances->values().end());
+      if (offsets) numbers.emplace(offsets->values().begin(), offsets->values().end());
       columns_.emplace(*column, std::move(*numbers));
     }
   }

@@ -3,6 +3,7 @@
 #include <aib/io/npy.hpp>
 #include <aib/sample/mesh.hpp>
 #include <aib/sample/point_map.hpp>
+#include <aib/sample/thin.hpp>
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>
 
@@ -76,6 +77,9 @@ void bind_sample(lua_State* state) {
                       .n = o.get<std::size_t>("n"),
                       .spacing = o.get<double>("spacing"),
                       .per_area = o.get<double>("per_area"),
+                      .method = o.choice("method", sample::spread::uniform,
+                                         {{"uniform", sample::spread::uniform},
+                                          {"poisson", sample::spread::poisson}}),
                       .seed = static_cast<std::uint64_t>(o.integer("seed", 1)),
                       .threads = s.threads};
                   o.done();
@@ -84,6 +88,14 @@ void bind_sample(lua_State* state) {
                   info.set("area", samples.area).set("density", samples.density);
                   info.set("floor", samples.floor);
                   return results(std::move(samples.points), info);
+                })
+      .function("thin", {"cloud", "options"},
+                [](const cloud::cloud& points, options& o) {
+                  sample::thin_options how;
+                  how.spacing = o.number("spacing", how.spacing);
+                  how.seed = static_cast<std::uint64_t>(o.integer("seed", 1));
+                  o.done();
+                  return sample::thin(points, how);
                 })
       .function("voxel", {"cloud", "options"},
                 [](session& s, const cloud::cloud& points, options& o) {

@@ -63,3 +63,20 @@ TEST_CASE("a concave polygon leaves its notch out") {
       2, 0, 2, {{100, 0, 0}, {104, 0, 0}, {104, 4, 0}, {102, 1, 0}, {100, 4, 0}}};
   CHECK(cloud::crop(diagonal(), v).labels == labels{0, 1});
 }
+
+TEST_CASE("a half space leaves its plane out") {
+  const cloud::cloud c{.points = {{0, 0, 1}, {0, 0, 2}, {0, 0, 3}}};
+  CHECK(cloud::crop(c, cloud::half_space{{0, 0, 1, -2}}).size() == 1);
+}
+
+TEST_CASE("a grid has its cells around their centres, and nothing outside") {
+  cloud::occupancy_grid grid{.low = {10, 0, 0}, .resolution = 2, .size = {2, 1, 2}};
+  grid.cells = {0, 1, 0, 0};
+  CHECK(grid.contains({10, 0, 2}));
+  CHECK(grid.contains({9.1, 0.9, 2.9}));
+  CHECK_FALSE(grid.contains({10, 0, 0}));
+  CHECK_FALSE(grid.contains({10, 0, 4}));
+  CHECK_FALSE(grid.contains({10, -2, 2}));
+  CHECK_FALSE(grid.contains({12, 0, 2}));
+  CHECK_FALSE(grid.contains({std::numeric_limits<double>::quiet_NaN(), 0, 2}));
+}

@@ -104,6 +104,73 @@ return aib.test {
     t:raises("points on the mesh (aib.sample.mesh) expected", aib.mesh.compare, points, mesh, {})
   end,
 
+  ["histograms, curves and scores come from the same distances"] = function(t)
+    local to_reference, to_estimate = aib.cloud.distances_both_ways(on_x(0, 1, 2, 5), on_x(0))
+    t:equal(to_reference:histogram { max = 4, bins = 4 }, { counts = { 1, 1, 1, 0 }, above = 1, width = 1 })
+    t:equal(aib.cloud.score(to_reference, to_estimate, { tau = 1.5 }).precision[1.5], 0.5)
+    local curve = aib.cloud.curve(to_reference, to_estimate, { max = 6, steps = 3 })
+    t:equal(curve.tau, { 2, 4, 6 })
+    t:equal(curve.precision, { 0.5, 0.75, 1 })
+    t:equal(curve.recall, { 1, 1, 1 })
+    t:raises("a number > 0 expected", aib.cloud.curve, to_reference, to_estimate, {})
+  end,
+
+  ["errors are written as a scalar and a colour"] = function(t)
+    local path = os.tmpname() .. ".ply"
+    local c = on_x(0, 1, 2)
+    local d = aib.cloud.distances(c, on_x(0))
+    aib.io.write_cloud(path, aib.cloud.colored(c, d, { max = 2 }), { scalars = { error = d } })
+    t:equal(aib.system.read_text(path):find("property float error", 1, true) ~= nil, true)
+    t:equal(aib.io.read_cloud(path).has_colors, true)
+    os.remove(path)
+    t:equal(aib.cloud.colors_of({ 0 / 0, 0 }, { max = 1, scale = "diverging" }), { { 128, 128, 128 }, { 238, 238, 238 } })
+    t:raises("a value for each of 3 points expected, found 1", aib.cloud.colored, c, { 1 }, { max = 1 })
+  end,
+
+  ["offsets have a sign"] = function(t)
+    local mesh = square()
+    local wall = aib.sample.mesh(mesh, { n = 100 })
+    local o = aib.cloud.offsets(aib.cloud.from_points { { 1, 1, 2 }, { 1, 1, -1 } }, wall)
+    t:equal({ #o, o[1], o[2], o:mean() }, { 2, 2, -1, 0.5 })
+    t:equal(o:mean_absolute(), 1.5)
+    t:equal(tostring(o), "offsets(2 values, mean 0.5, deviation 1.5)")
+    t:equal(mesh.n_open_edges, 4)
+    t:raises("a watertight mesh expected, found 4 open edges", aib.mesh.offsets, wall, mesh)
+  end,
+
+  ["faces and labels have scores of their own"] = function(t)
+    local mesh = square()
+    local samples = aib.sample.mesh(mesh, { n = 200 })
+    local s = aib.mesh.face_scores(aib.cloud.from_points { { 3, 1, 0.5 } }, mesh, { samples = samples, tau = 9 })
+    t:equal(#s.accuracy, 2)
+    t:equal(s.n_estimate[1] + s.n_estimate[2], 1)
+    t:equal(s.recall, { 1, 1 })
+    t:raises("a mesh with labels expected", aib.mesh.with_labels, samples, mesh)
+    t:raises("a reference with labels expected", aib.cloud.compare_by_label, on_x(0), on_x(1))
+  end,
+
+  ["beams see what is free"] = function(t)
+    local wall = aib.cloud.from_points { { 4, 0, 0 }, { 4, 1, 0 } }
+    local est = aib.cloud.from_points { { 4, 0, 0 }, { 2, 0.5, 0 }, { 8, 0, 0 } }
+    local s = aib.cloud.eth3d(est, { { points = wall, scanner = { 0, 0, 0 } } }, { tolerances = { 0.1 }, voxel = 0.1 })
+    t:equal(s.completeness[0.1], 0.5)
+    t:equal(s.accuracy[0.1], 0.5)
+    t:equal(s.n_unobserved[0.1], 1)
+    t:raises("scan 1: { points = cloud, scanner = {x, y, z} } expected", aib.cloud.eth3d, est, { wall },
+      { tolerances = 1 })
+  end,
+
+  ["planes crop"] = function(t)
+    t:equal(#aib.cloud.crop(on_x(0, 1, 2), { plane = { 1, 0, 0, -0.5 } }), 2)
+  end,
+
+  ["points are thinned by distance, meshes sampled evenly"] = function(t)
+    t:equal(#aib.sample.thin(on_x(0, 0.1, 5), { spacing = 1 }), 2)
+    local even, info = aib.sample.mesh(square(), { n = 100, method = "poisson" })
+    t:equal(#even, 100)
+    t:equal(info.floor < 0.2, true)
+  end,
+
   ["voxels thin a cloud"] = function(t)
     t:equal(#aib.sample.voxel(on_x(0.1, 0.2, 1.5), { size = 1 }), 2)
   end,

@@ -8,8 +8,11 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace aib::cloud {
@@ -55,6 +58,36 @@ struct polygon_volume {
       if (a[u] + (p[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u]) < p[u]) inside = !inside;
     }
     return inside;
+  }
+};
+
+/// What lies on the positive side of a plane, the plane itself left out.
+struct half_space {
+  Eigen::Vector4d plane = {0, 0, 1, 0};  ///< a, b, c, d of a x + b y + c z + d > 0
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    return plane.head<3>().dot(p) + plane[3] > 0;
+  }
+};
+
+/// Cells of which some are in: the observability mask of the DTU benchmark. Cell (i, j, k) has its
+/// centre, not its corner, at low + resolution (i, j, k); what lies on a border falls to the even
+/// cell.
+struct occupancy_grid {
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();
+  double resolution = 1;
+  std::array<std::size_t, 3> size = {};
+  std::vector<std::uint8_t> cells = {};  ///< not 0 is in; k runs fastest, then j
+
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
+    std::size_t index = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      const double place = std::nearbyint((p[a] - low[a]) / resolution);
+      if (!(place >= 0 && place < static_cast<double>(size[axis]))) return false;
+      index = index * size[axis] + static_cast<std::size_t>(place);
+    }
+    return cells[index] != 0;
   }
 };
 

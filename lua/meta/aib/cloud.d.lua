@@ -44,6 +44,16 @@ function point_cloud:transformed(transform) end
 ---@field axis_max number
 ---@field bounding_polygon number[][]
 
+---What lies on the positive side of a plane.
+---@class aib.HalfSpace
+---@field plane number[]  # a, b, c, d of a x + b y + c z + d > 0
+
+---Cells of which those that are not 0 are in, as DTU's observability masks; `min` is the centre of the first.
+---@class aib.Grid
+---@field grid aib.Array  # X x Y x Z
+---@field min number[]
+---@field resolution number
+
 ---A distance for each point of a cloud, in its order: `d[i]`, `#d`. NaN for a point that is not finite; beyond the
 ---maximum +infinity (drop) or the maximum (clamp).
 ---@class aib.Distances
@@ -72,6 +82,11 @@ function distances:max() end
 ---@return number quantile
 function distances:quantile(q) end
 
+---Counts in equal bins from 0 to max.
+---@param options { max: number, bins?: integer }  # 100 bins
+---@return { counts: integer[], above: integer, width: number } histogram
+function distances:histogram(options) end
+
 ---Share of the finite points strictly below tau.
 ---@param tau number
 ---@return number share
@@ -93,7 +108,7 @@ function cloud.joined(clouds) end
 
 ---The points that lie in a volume.
 ---@param points aib.Cloud
----@param volume aib.Box|aib.OrientedBox|aib.PolygonVolume
+---@param volume aib.Box|aib.OrientedBox|aib.PolygonVolume|aib.HalfSpace|aib.Grid
 ---@return aib.Cloud inside
 function cloud.crop(points, volume) end
 
@@ -171,6 +186,114 @@ function cloud.distances(from, to, options) end
 ---@param options? aib.CompareOptions
 ---@return aib.Comparison comparison
 function cloud.compare(est, ref, options) end
+
+---Distances in both directions, from one search: for `score` and `curve`, to be drawn or written.
+---@param est aib.Cloud
+---@param ref aib.Cloud
+---@param options? aib.DistanceOptions
+---@return aib.Distances to_reference  # of the points of the estimate
+---@return aib.Distances to_estimate  # of the points of the reference
+function cloud.distances_both_ways(est, ref, options) end
+
+---The metrics of distances that are known, as `compare` gives them.
+---@param to_reference aib.Distances
+---@param to_estimate aib.Distances
+---@param options? { tau?: number|number[] }
+---@return aib.Comparison comparison
+function cloud.score(to_reference, to_estimate, options) end
+
+---Precision, recall and F-score at equal steps up to a threshold.
+---@param to_reference aib.Distances
+---@param to_estimate aib.Distances
+---@param options { max: number, steps?: integer }  # 100 steps
+---@return { tau: number[], precision: number[], recall: number[], f_score: number[] } curve
+function cloud.curve(to_reference, to_estimate, options) end
+
+---@class aib.LabelComparison: aib.Comparison
+---@field label integer
+---@field name string|nil  # of the label, where a mesh names it
+
+---A comparison for each label: of the reference's points that have it, and of the estimate's that are nearest to such a
+---point. Where one of them is missing, only `label`, `n_estimate` and `n_reference` are there.
+---@param est aib.Cloud
+---@param ref aib.Cloud  # with labels
+---@param options? aib.CompareOptions
+---@return aib.LabelComparison[] comparisons  # by ascending label
+function cloud.compare_by_label(est, ref, options) end
+
+---A signed distance for each point of a cloud: `o[i]`, `#o`. NaN for a point that is not finite.
+---@class aib.Offsets
+---@field n_dropped integer  # values that are not finite
+local offsets = {}
+
+---Mean of the offsets: how far all has moved.
+---@return number mean
+function offsets:mean() end
+
+---Mean of their sizes.
+---@return number mean_absolute
+function offsets:mean_absolute() end
+
+---Their median.
+---@return number median
+function offsets:median() end
+
+---Standard deviation about the mean.
+---@return number deviation
+function offsets:deviation() end
+
+---A quantile of them.
+---@param q number  # 0..1, interpolated linearly
+---@return number quantile
+function offsets:quantile(q) end
+
+---How far each point lies before (positive) or behind the reference, along the normal of its nearest point there.
+---@param from aib.Cloud
+---@param ref aib.Cloud  # with normals
+---@return aib.Offsets offsets
+function cloud.offsets(from, ref) end
+
+---The cloud in the colours of one value a point: 0 dark blue to max light yellow; offsets -max blue, 0 light grey, max
+---red. NaN is grey.
+---@param points aib.Cloud
+---@param values aib.Distances|aib.Offsets|number[]
+---@param options { max: number, scale?: "sequential"|"diverging" }
+---@return aib.Cloud colored
+function cloud.colored(points, values, options) end
+
+---The same colours as a list, for `face_colors` of `aib.io.write_mesh`.
+---@param values aib.Distances|aib.Offsets|number[]
+---@param options { max: number, scale?: "sequential"|"diverging" }
+---@return integer[][] colors  # {red, green, blue}, 0..255
+function cloud.colors_of(values, options) end
+
+---@class aib.LaserScan
+---@field points aib.Cloud  # in the world
+---@field scanner number[]  # where it stood
+
+---@class aib.Eth3dOptions
+---@field tolerances number|number[]
+---@field voxel? number  # edge of the voxels over which shares are averaged, default 0.01
+---@field beam_radius? number  # at the scanner, default 0.001125
+---@field beam_half_angle_deg? number  # default 0.011
+---@field rule? "official"|"within"|"below"  # a point at exactly a tolerance is complete: but not at the largest
+---(official: the tool of 2017, voxels in float as it has them), always, never
+
+---@class aib.Eth3d
+---@field completeness table<number, number>  # by tolerance
+---@field accuracy table<number, number>  # by tolerance; nil where nothing was observed
+---@field f_score table<number, number>
+---@field n_unobserved table<number, integer>  # points of the estimate that count neither way
+---@field n_estimate integer
+---@field n_reference integer
+
+---The scores of the ETH3D benchmark: shares averaged over voxels; only what laser beams saw to be free, or a surface,
+---counts in accuracy.
+---@param est aib.Cloud
+---@param scans aib.LaserScan[]
+---@param options aib.Eth3dOptions
+---@return aib.Eth3d scores
+function cloud.eth3d(est, scans, options) end
 
 ---Means and medians of |cosine| between normals of nearest points.
 ---@class aib.NormalConsistency

@@ -9,19 +9,26 @@ local sample = {}
 ---@field n? integer  # this many points
 ---@field spacing? number  # one a square of this side, in the unit of the mesh
 ---@field per_area? number  # this many a square unit
+---@field method? "uniform"|"poisson"  # at random, or evenly (Poisson disk: spacing is then the least distance)
 ---@field seed? integer  # default 1
 
 ---@class aib.MeshSampleInfo
 ---@field area number  # of the mesh, square units
 ---@field density number  # points a square unit
----@field floor number  # 0.5 / sqrt(density): an accuracy against these samples says nothing below it
+---@field floor number  # an accuracy against these samples says nothing below it: 0.5 / sqrt(density), or measured
 
----Points on a mesh, uniform by area, with normals and, where the mesh has them, labels.
+---Points on a mesh, spread by area, with normals and, where the mesh has them, labels.
 ---@param surface aib.Mesh
 ---@param options aib.MeshSampleOptions
 ---@return aib.Cloud points
 ---@return aib.MeshSampleInfo info
 function sample.mesh(surface, options) end
+
+---Points in random order that have none taken before within the spacing, as DTU thins them.
+---@param points aib.Cloud
+---@param options { spacing: number, seed?: integer }
+---@return aib.Cloud kept
+function sample.thin(points, options) end
 
 ---@class aib.VoxelOptions
 ---@field size number  # edge of a voxel
