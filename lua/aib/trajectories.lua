@@ -27,7 +27,8 @@ function M.inputs(own)
 end
 
 --- The input of an alignment.
-M.align = { kind = "choice", choices = { "none", "sim3", "se3", "yaw", "scale", "first" }, default = "none",
+M.align = { kind = "choice", choices = { "none", "sim3", "se3", "yaw", "yaw_scale", "scale", "first" },
+  default = "none",
   help = "what of an estimate is fitted to the reference before it is scored" }
 
 local function way_of_pairing(est, ref, by)

@@ -40,6 +40,7 @@ align::trajectory_options trajectory_options(options& o) {
                         {{"sim3", align_mode::sim3},
                          {"se3", align_mode::se3},
                          {"yaw", align_mode::yaw},
+                         {"yaw_scale", align_mode::yaw_scale},
                          {"scale", align_mode::scale},
                          {"first", align_mode::first}});
   t.fit.rotation_weight = o.number("rotation_weight", 0);
@@ -61,23 +62,43 @@ std::vector<Eigen::Vector3d> points_of(const sol::object& object, const char* ar
                                ": trajectory or list of points {x, y, z} expected"));
 }
 
+std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
+  for (std::size_t& i : index) ++i;
+  return index;
+}
+
 record as_record(lua_State* state, const align::alignment& a) {
   record r(state);
-  std::vector<std::size_t> outliers = a.outliers;
-  for (std::size_t& i : outliers) ++i;
-  r.set("transform", a.transform).set("n_inliers", a.n_inliers).set("outliers", outliers);
-  r.set("rmse", a.rmse).set("condition", a.condition).set("turn_deg", a.turn_deg);
+  r.set("transform", a.transform).set("n_inliers", a.n_inliers);
+  r.set("outliers", one_based(a.outliers)).set("rmse", a.rmse).set("half_rmse", a.half_rmse);
+  r.set("condition", a.condition).set("turn_deg", a.turn_deg);
   return r.set("turn_error", a.turn_error).set("warnings", a.warnings);
 }
 
-/// What `trajectory` gives, with the frames first..last and what is told of batches alone;
-/// `degenerate` says why there is no transform.
+/// What `trajectory` gives, with the frames and what is told of batches alone; `degenerate` says
+/// why there is no transform.
 record as_record(lua_State* state, const align::batch_alignment& b) {
   record r = b.fit ? as_record(state, *b.fit) : record(state);
-  r.set("first", b.begin + 1).set("last", b.end).set("half_rmse", b.half_rmse);
-  r.set("seam", b.seam);
+  r.set("frames", one_based(b.frames)).set("missing", b.missing).set("seam", b.seam);
+  if (!b.frames.empty()) r.set("first", b.frames.front() + 1).set("last", b.frames.back() + 1);
   if (!b.fit) r.set("degenerate", b.degenerate);
   return r;
+}
+
+align::batches_options batches_options(options& o) {
+  align::batches_options b;
+  b.size = o.count("size", b.size);
+  b.sizes = o.get<std::vector<std::size_t>>("sizes").value_or(b.sizes);
+  b.names = o.get<std::vector<std::vector<std::string>>>("names").value_or(b.names);
+  b.frames = o.get<std::vector<std::vector<std::size_t>>>("frames").value_or(b.frames);
+  for (auto& batch : b.frames) {
+    for (std::size_t& i : batch) {
+      if (i == 0) o.reject("frames", "frames from 1 on expected, found 0");
+      --i;
+    }
+  }
+  b.align = trajectory_options(o);
+  return b;
 }
 
 align::icp_options icp_options(options& o, const session& s) {
@@ -129,10 +150,7 @@ void bind_align(lua_State* state) {
       .function(
           "batches", {"est", "ref", "options"},
           [](lua_State* l, const pose::trajectory& est, const pose::trajectory& ref, options& o) {
-            align::batches_options b;
-            b.size = o.count("size", b.size);
-            b.sizes = o.get<std::vector<std::size_t>>("sizes").value_or(b.sizes);
-            b.align = trajectory_options(o);
+            const align::batches_options b = batches_options(o);
             o.done();
             const auto batches = align::batches(est, ref, b);
             std::vector<record> list;

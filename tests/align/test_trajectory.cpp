@@ -10,6 +10,7 @@
 #include "../pose/synthetic.hpp"
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,51 @@ TEST_CASE("yaw alone turns about the vertical that is given") {
                                      {.fit = {.mode = align_mode::yaw, .up = up}});
     CHECK(distance(a.transform, truth) < 1e-12);
   }
+}
+
+TEST_CASE("yaw_scale fits the scale as well and keeps down where it is") {
+  const pose::trajectory reference = synthetic::orbit();
+  const math::sim3 truth{2.5, math::rotation_from(Eigen::Vector3d(0, 0, 0.7)), {1, 2, 3}};
+  const align::trajectory_options options{.fit = {.mode = align_mode::yaw_scale}};
+  const auto a = align::trajectory(truth.inverse() * reference, reference, options);
+  CHECK(distance(a.transform, truth) < 1e-12);
+  CHECK(a.turn_deg < 1e-6);
+  CHECK(*a.half_rmse < 1e-12);
+  const math::sim3 tilted{0.5, math::rotation_from(Eigen::Vector3d(0.2, 0, 0.7)), {1, 2, 3}};
+  const auto b = align::trajectory(tilted * reference, reference, options);
+  CHECK(b.transform.rotation(2, 2) == doctest::Approx(1).epsilon(1e-15));
+  CHECK(b.rmse > 0.01);
+  const auto mirrored = math::rotation_from(Eigen::Vector3d(std::numbers::pi, 0, 0));
+  pose::trajectory ladder = straight(20, 0);
+  for (auto& pose : ladder.world_from_camera) {
+    pose.translation.z() = 3 * pose.translation.x();
+    pose.translation.y() = 0;
+  }
+  CHECK_THROWS_AS(align::trajectory(math::sim3{.rotation = mirrored} * ladder, ladder, options),
+                  undefined_error);
+}
+
+TEST_CASE("a climb beside the vertical leaves the turn about it free, and yaw says so") {
+  pose::trajectory reference;
+  for (int i = 0; i < 30; ++i) {
+    math::rigid3 pose;
+    pose.translation = {0.01 * (i % 3), 0.01 * (i % 2), 1.0 * i};
+    reference.world_from_camera.push_back(pose);
+  }
+  const auto a = align::trajectory(synthetic::noisy(reference, {.position = 0.02}), reference,
+                                   {.fit = {.mode = align_mode::yaw}});
+  CHECK(a.turn_deg > 5);
+  REQUIRE(a.warnings.size() == 1);
+  CHECK(a.warnings[0].find("the turn about (0, 0, 1)") == 0);
+}
+
+TEST_CASE("half of the poses are scored under a fit to the other half") {
+  const pose::trajectory reference = synthetic::orbit({.frames = 40});
+  const pose::trajectory estimate = synthetic::noisy(reference, {.position = 0.05});
+  const auto a = align::trajectory(estimate, reference);
+  CHECK(*a.half_rmse > a.rmse);
+  CHECK(*a.half_rmse < 2 * a.rmse);
+  CHECK(!align::trajectory(estimate, reference, {.n = 3}).half_rmse);  // two poses tell no fit
 }
 
 TEST_CASE("yaw works along a straight level flight, where a similarity is refused") {

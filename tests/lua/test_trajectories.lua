@@ -68,6 +68,28 @@ return aib.test {
     t:equal({ batches[3].first, batches[3].last }, { 21, 30 })
     t:near(aib.pose.ape(moved, ref).rmse, 0, 1e-10)
     t:near(batches[2].seam, 0, 1e-10)
+    t:near(batches[2].half_rmse, 0, 1e-10)
+  end,
+
+  ["batches are lists of frames or of names"] = function(t)
+    local ref, est = ring(30), ring(30, shifted)
+    local batches, moved = aib.align.batches(est, ref, { frames = { { 20, 21, 22, 23 }, { 1, 5, 9, 13 } }, mode = "se3" })
+    t:equal({ batches[1].first, batches[2].last, batches[2].frames }, { 20, 13, { 1, 5, 9, 13 } })
+    t:near(aib.pose.ape(moved, ref).rmse, 0, 1e-10)
+    t:equal(aib.pose.ape(moved, ref).count, 8)
+    local named = aib.align.batches(est, ref, { names = { { "001.png", "007.png", "013.png", "x.png" } } })
+    t:equal({ named[1].frames, named[1].missing }, { { 1, 7, 13 }, { "x.png" } })
+    t:raises("comes twice", aib.align.batches, est, ref, { frames = { { 1, 2 }, { 2 } } })
+    t:raises("from 1 on", aib.align.batches, est, ref, { frames = { { 0 } } })
+  end,
+
+  ["a turn about the vertical with scale"] = function(t)
+    local ref = ring(30)
+    local c, s = math.cos(0.4), math.sin(0.4)
+    local turn = aib.math.sim3 { scale = 2, rotation = { { c, -s, 0 }, { s, c, 0 }, { 0, 0, 1 } } }
+    local fit = aib.align.trajectory(turn:inverse() * ref, ref, { mode = "yaw_scale" })
+    t:near(fit.transform.scale, 2, 1e-12)
+    t:near(fit.half_rmse, 0, 1e-10)
   end,
 
   ["the AUC is broken down by batch and by gap, the worst pairs are named"] = function(t)

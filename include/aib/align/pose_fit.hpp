@@ -18,17 +18,27 @@ namespace aib::align {
 
 /// What an alignment may change.
 enum class align_mode {
-  sim3,   ///< rotation, translation, scale
-  se3,    ///< rotation, translation
-  yaw,    ///< the turn about the vertical, translation: both worlds know where down is
-  scale,  ///< scale alone, as evo's --correct_scale without --align
-  first,  ///< the rigid motion that lays the first pose of the one on that of the other
+  sim3,       ///< rotation, translation, scale
+  se3,        ///< rotation, translation
+  yaw,        ///< the turn about the vertical, translation: both worlds know where down is
+  yaw_scale,  ///< the same and scale
+  scale,      ///< scale alone, as evo's --correct_scale without --align
+  first,      ///< the rigid motion that lays the first pose of the one on that of the other
 };
+
+/// Whether a fit turns about the vertical alone.
+[[nodiscard]] constexpr bool is_about_vertical(align_mode mode) {
+  return mode == align_mode::yaw || mode == align_mode::yaw_scale;
+}
+
+[[nodiscard]] constexpr bool has_scale(align_mode mode) {
+  return mode == align_mode::sim3 || mode == align_mode::yaw_scale || mode == align_mode::scale;
+}
 
 struct fit_options {
   align_mode mode = align_mode::sim3;
   double rotation_weight = 0;  ///< sim3, se3: > 0: orientations count, a radian as this length
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw: the vertical of both worlds
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< yaw, yaw_scale: the vertical of both worlds
   rank_rule convention = rank_rule::relative;
 };
 
@@ -47,6 +57,17 @@ class pose_fit {
   /// Distance that a transform leaves between the positions of a pose.
   [[nodiscard]] double residual(const math::sim3& ref_from_est, std::size_t i) const {
     return (ref_from_est * estimate_[i].translation - reference_[i].translation).norm();
+  }
+
+  /// Square sum of the residuals of the chosen poses.
+  [[nodiscard]] double square_sum(const math::sim3& ref_from_est,
+                                  std::span<const std::size_t> chosen) const {
+    double sum = 0;
+    for (const std::size_t i : chosen) {
+      const double r = residual(ref_from_est, i);
+      sum += r * r;
+    }
+    return sum;
   }
 
   [[nodiscard]] std::vector<Eigen::Vector3d> estimate(std::span<const std::size_t> chosen) const {
@@ -76,7 +97,7 @@ inline math::sim3 pose_fit::operator()(std::span<const std::size_t> chosen) cons
     const math::rigid3 moved = reference_[chosen.front()] * estimate_[chosen.front()].inverse();
     return {1, moved.rotation, moved.translation};
   }
-  if (options_.mode == align_mode::yaw) return about_vertical(chosen);
+  if (is_about_vertical(options_.mode)) return about_vertical(chosen);
   const bool turns = options_.mode != align_mode::scale;
   if (turns && options_.rotation_weight > 0) return with_rotations(chosen);
   const math::sim3 fitted =
@@ -115,19 +136,26 @@ inline math::sim3 pose_fit::with_rotations(std::span<const std::size_t> chosen) 
 }
 
 /// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation", IROS 2018,
-/// Sec. III-C.
+/// Sec. III-C; the scale as in Umeyama, PAMI 1991, Eq. (42).
 inline math::sim3 pose_fit::about_vertical(std::span<const std::size_t> chosen) const {
   const Eigen::Vector3d up = options_.up.normalized();
   if (!up.allFinite()) throw argument_error("align: up has no direction");
   const detail::paired_moments m(estimate(chosen), reference(chosen));
   const Eigen::Matrix3d& c = m.covariance;
-  // sum y . R x = cos a tr((I - up up^T) C) + sin a (up . sum x cross y) + constant
+  // mean of y . R x = cos a tr((I - up up^T) C) + sin a (up . mean of x cross y) + up . C up
   const Eigen::Vector3d cross(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
-  const double cosine = c.trace() - up.dot(c * up), sine = up.dot(cross);
+  const double vertical = up.dot(c * up), cosine = c.trace() - vertical, sine = up.dot(cross);
   if (!(std::hypot(cosine, sine) > refused_ratio * c.norm()))
     throw undefined_error("align: the positions leave the turn about the vertical free");
   const Eigen::Vector3d turn = std::atan2(sine, cosine) * up;
-  return m.centred(1, math::rotation_from(turn));
+  const double scale = options_.mode == align_mode::yaw
+                           ? 1
+                           : (vertical + std::hypot(cosine, sine)) / m.estimate_variance;
+  if (!(scale > 0)) {
+    throw undefined_error(
+        message("align: heights and the turn contradict each other, scale ", scale));
+  }
+  return m.centred(scale, math::rotation_from(turn));
 }
 
 }  // namespace aib::align

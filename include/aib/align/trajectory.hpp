@@ -42,9 +42,10 @@ struct alignment {
   std::size_t n_inliers;              ///< frames that the fit used
   std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
   double rmse;                        ///< of the inliers' positions, unit of the reference
+  std::optional<double> half_rmse;    ///< of every other inlier under a fit to the others
   double condition;   ///< first over second singular value of the positions, of the worse side
-  double turn_deg;    ///< expected error of the turn about the long axis of the positions, <= 90
-  double turn_error;  ///< what that moves a point `stand_off` away from the axis
+  double turn_deg;    ///< expected error of the turn that the positions tell worst, <= 90
+  double turn_error;  ///< what that moves a point `stand_off` away from its axis
   std::vector<std::string> warnings;
 };
 
@@ -59,18 +60,56 @@ alignment trajectory(const pose::trajectory& estimate,
 
 namespace detail {
 
-/// Distances from the long axis of the positions, root of their square sum.
-inline double lever(const spread& s) {
-  return std::hypot(s.singular_values[1], s.singular_values[2]);
+/// The turn that positions tell worst: about their long axis, or the vertical where a fit turns
+/// about nothing else.
+struct weakest_turn {
+  Eigen::Vector3d axis;
+  double lever;  ///< root of the square sum of the distances from it
+};
+
+inline weakest_turn weakest_turn_of(std::span<const Eigen::Vector3d> positions,
+                                    const fit_options& options) {
+  const spread s = spread_of(positions);
+  if (!is_about_vertical(options.mode))
+    return {s.axes.col(0), std::hypot(s.singular_values[1], s.singular_values[2])};
+  const Eigen::Vector3d up = options.up.normalized();
+  double sum = 0;
+  for (const Eigen::Vector3d& p : positions) sum += (p - s.mean).cross(up).squaredNorm();
+  return {up, std::sqrt(sum)};
 }
 
-/// Standard deviation of the turn about the long axis, radians, at most a right angle: the residual
-/// of a coordinate over the lever.
+/// Standard deviation of a turn, radians, at most a right angle: the residual of a coordinate over
+/// the lever.
 inline double turn_sigma(double lever, double sse, std::size_t n, std::size_t parameters) {
   constexpr double right_angle = std::numbers::pi / 2;
   const double freedom = 3 * static_cast<double>(n) - static_cast<double>(parameters);
   if (!(freedom > 0) || !(lever > 0)) return right_angle;
   return std::min(right_angle, std::sqrt(sse / freedom) / lever);
+}
+
+inline std::size_t parameters_of(align_mode mode) {
+  return (is_about_vertical(mode) ? 4u : 6u) + (has_scale(mode) ? 1u : 0u);
+}
+
+/// Error of the odd poses of those chosen under a fit to the even ones; nothing where these do not
+/// tell it.
+inline std::optional<double> half_rmse(const pose_fit& fit, std::span<const std::size_t> chosen) {
+  std::vector<std::size_t> even, odd;
+  for (std::size_t k = 0; k < chosen.size(); ++k) (k % 2 == 0 ? even : odd).push_back(chosen[k]);
+  if (odd.empty()) return std::nullopt;
+  try {
+    return std::sqrt(fit.square_sum(fit(even), odd) / static_cast<double>(odd.size()));
+  } catch (const undefined_error&) {
+    return std::nullopt;
+  }
+}
+
+/// What a user should know about how well the turn is known.
+inline std::string turn_warning(const alignment& a, const Eigen::Vector3d& axis, double stand_off) {
+  return message("the turn about ", direction_text(axis), ", along which the positions lie ",
+                 "(condition ", std::round(a.condition), "), is known to +-",
+                 std::round(a.turn_deg * 10) / 10, " deg, ", std::round(a.turn_error * 100) / 100,
+                 " at a distance of ", stand_off, "; rotation_weight uses the orientations");
 }
 
 /// The scale that the median distances from the median positions tell.
@@ -103,6 +142,7 @@ inline alignment trajectory(const pose::trajectory& estimate,
                 .n_inliers = used.size(),
                 .outliers = {},
                 .rmse = 0,
+                .half_rmse = detail::half_rmse(fit, used),
                 .condition = 1,
                 .turn_deg = 0,
                 .turn_error = 0,
@@ -111,35 +151,26 @@ inline alignment trajectory(const pose::trajectory& estimate,
   std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
                       std::back_inserter(left_out));
   for (const std::size_t i : left_out) out.outliers.push_back(frames.index[i]);
-  double sse = 0;
-  for (const std::size_t i : used) {
-    const double r = fit.residual(out.transform, i);
-    sse += r * r;
-  }
+  const double sse = fit.square_sum(out.transform, used);
   out.rmse = std::sqrt(sse / static_cast<double>(used.size()));
-  if (options.fit.mode == align_mode::first) return out;
+  const align_mode mode = options.fit.mode;
+  if (mode == align_mode::first) return out;
 
   const std::vector<Eigen::Vector3d> x = fit.estimate(used), y = fit.reference(used);
-  const spread s = spread_of(x), s_reference = spread_of(y);
-  out.condition = std::max(s.condition(), s_reference.condition());
-  const bool turns = options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::se3;
-  if (turns && !(options.fit.rotation_weight > 0)) {
+  out.condition = std::max(spread_of(x).condition(), spread_of(y).condition());
+  if (mode != align_mode::scale && !(options.fit.rotation_weight > 0)) {
+    const auto in_estimate = detail::weakest_turn_of(x, options.fit);
+    const auto in_reference = detail::weakest_turn_of(y, options.fit);
     // Of both sides the thinner: noise widens a line, it never narrows one.
-    const double turn = detail::turn_sigma(
-        std::min(out.transform.scale * detail::lever(s), detail::lever(s_reference)), sse,
-        used.size(), options.fit.mode == align_mode::sim3 ? 7 : 6);
+    const double lever = std::min(out.transform.scale * in_estimate.lever, in_reference.lever);
+    const double turn = detail::turn_sigma(lever, sse, used.size(), detail::parameters_of(mode));
     out.turn_deg = math::degrees(turn);
     out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
-    if (1 / out.condition < doubted_ratio || out.turn_deg > 5) {
-      const Eigen::Vector3d axis = s_reference.axes.col(0);
-      out.warnings.push_back(message(
-          "the turn about ", detail::direction_text(axis), ", along which the positions lie ",
-          "(condition ", std::round(out.condition), "), is known to +-",
-          std::round(out.turn_deg * 10) / 10, " deg, ", std::round(out.turn_error * 100) / 100,
-          " at a distance of ", options.stand_off, "; rotation_weight uses the orientations"));
-    }
+    const bool thin = !is_about_vertical(mode) && 1 / out.condition < doubted_ratio;
+    if (thin || out.turn_deg > 5)
+      out.warnings.push_back(detail::turn_warning(out, in_reference.axis, options.stand_off));
   }
-  if (options.fit.mode == align_mode::sim3 || options.fit.mode == align_mode::scale) {
+  if (has_scale(mode)) {
     const double expected = detail::scale_of_medians(x, y);
     const double off = out.transform.scale / expected;
     if (std::isfinite(expected) && (off < 0.5 || off > 2)) {

@@ -13,10 +13,10 @@ function align.umeyama(est, ref, options) end
 
 ---What a fit may change and which frames it trusts.
 ---@class aib.AlignOptions
----@field mode? "sim3"|"se3"|"yaw"|"scale"|"first"  # first: lays the first pose upon the first
+---@field mode? "sim3"|"se3"|"yaw"|"yaw_scale"|"scale"|"first"  # yaw: turns about the vertical alone; first: lays the first pose upon the first
 ---@field n? integer  # fit to the first n registered frames; all
 ---@field rotation_weight? number  # orientations count, a radian as this length: for straight flights
----@field up? number[]  # yaw: the vertical of both worlds; {0, 0, 1}
+---@field up? number[]  # yaw, yaw_scale: the vertical of both worlds; {0, 0, 1}
 ---@field outlier_factor? number  # leaves out frames farther than this times the median distance from the median position
 ---@field outlier_distance? number  # the same, a distance
 ---@field robust? boolean  # finds the frames that agree, then fits to them
@@ -31,8 +31,9 @@ function align.umeyama(est, ref, options) end
 ---@field n_inliers integer
 ---@field outliers integer[]  # frames that were left out
 ---@field rmse number  # of the inliers' positions
+---@field half_rmse number|nil  # of every other inlier, fitted to the others
 ---@field condition number  # first over second singular value of the positions
----@field turn_deg number  # expected error of the turn about the long axis of the positions
+---@field turn_deg number  # expected error of the turn that the positions tell worst: about their long axis; yaw: about the vertical
 ---@field turn_error number  # what that moves a point at stand_off
 ---@field warnings string[]
 
@@ -45,21 +46,24 @@ function align.trajectory(est, ref, options) end
 
 ---@class aib.BatchOptions : aib.AlignOptions
 ---@field size? integer  # frames of a batch; 200
----@field sizes? integer[]  # of each batch instead
+---@field sizes? integer[]  # of each batch instead, one after another
+---@field frames? integer[][]  # the frames of each batch instead, in any order; none in two
+---@field names? string[][]  # the image names of each batch instead; those of no pose are missing
 
 ---@class aib.BatchAlignment : aib.Alignment
----@field first integer
----@field last integer
+---@field frames integer[]
+---@field missing string[]  # names of the batch that no pose has
+---@field first integer|nil  # the first of the frames
+---@field last integer|nil  # the last
 ---@field degenerate string|nil  # why there is no transform
----@field half_rmse number|nil  # of every other frame, fitted to the others
 ---@field seam number|nil  # jump of the position error from the batch before
 
----Fits each sequential batch on its own. A batch that does not tell its transform is named, not guessed.
+---Fits each batch on its own: frames one after another, or the lists that are given. A batch that does not tell its transform is named, not guessed.
 ---@param est aib.Trajectory
 ---@param ref aib.Trajectory  # associated
 ---@param options? aib.BatchOptions
 ---@return aib.BatchAlignment[] batches
----@return aib.Trajectory moved  # poses of degenerate batches are not registered
+---@return aib.Trajectory moved  # poses of degenerate batches and of frames in no batch are not registered
 function align.batches(est, ref, options) end
 
 ---@class aib.IcpOptions
