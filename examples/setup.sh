@@ -45,6 +45,7 @@ clang-format         program clang-format
 lua-check            program luacheck
 cmake                program cmake
 colmap               program colmap
+valgrind             program valgrind
 doxygen              program doxygen
 python3-matplotlib   python matplotlib
 '

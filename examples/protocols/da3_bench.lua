@@ -34,7 +34,7 @@ return aib.protocol {
     reference = { kind = "file", position = 2, help = "cloud of the truth" },
     dataset = { kind = "choice", choices = { "none", "eth3d", "7scenes", "hiroom", "scannetpp" }, default = "none",
       help = "sets threshold and voxel" },
-    threshold = { kind = "number", unit = "m", default = -1, help = "of precision and recall; below 0: the data set's" },
+    threshold = { kind = "number", unit = "m", default = -1, help = "of precision, recall; below 0: the data set's" },
     voxel = { kind = "number", unit = "m", default = -1, help = "0: no thinning; below 0: the data set's" },
   },
   run = function(input, report)

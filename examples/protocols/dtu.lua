@@ -1,13 +1,14 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- The evaluation of the DTU benchmark: the reconstruction thinned to a density, within the observability mask; distances
---- of 20 mm and more dropped; accuracy, completeness and their mean ("overall").
+--- The evaluation of the DTU benchmark: the reconstruction thinned to a density, within the observability mask;
+--- distances of 20 mm and more dropped; accuracy, completeness and their mean ("overall").
 ---
 ---   aib-lua dtu scan1.ply stl001_total.ply --mask ObsMask1_10.npz --plane Plane1.npz
 ---
 --- Masks and planes are MATLAB files; Python makes NPZ files of them:
----   m = scipy.io.loadmat("ObsMask1_10.mat"); numpy.savez("ObsMask1_10.npz", **{k: m[k] for k in ("ObsMask", "BB", "Res")})
+---   m = scipy.io.loadmat("ObsMask1_10.mat")
+---   numpy.savez("ObsMask1_10.npz", ObsMask=m["ObsMask"], BB=m["BB"], Res=m["Res"])
 ---   numpy.savez("Plane1.npz", P=scipy.io.loadmat("Plane1.mat")["P"])
 --- Which points thinning keeps depends on its order, which the official script does not seed; here --seed does.
 local aib = require "aib"

@@ -1,14 +1,14 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- The evaluation of Tanks and Temples: trajectory alignment, three ICP rounds with scale, crop, voxels of tau / 2, then
---- precision, recall and F-score at tau, and their curves up to 5 tau.
+--- The evaluation of Tanks and Temples: trajectory alignment, three ICP rounds with scale, crop, voxels of tau / 2,
+--- then precision, recall and F-score at tau, and their curves up to 5 tau.
 ---
 ---   aib-lua tanks_and_temples truck.ply Truck.ply --scene truck --crop Truck.json --trajectory truck.log \
 ---     --reference_trajectory Truck_COLMAP_SfM.log --reference_transform Truck_trans.txt --errors_to out
 ---
---- The official RANSAC is not seeded; this one is (--seed). Where precision and recall are 0 the official script divides
---- by zero; here the F-score is 0.
+--- The official RANSAC is not seeded; this one is (--seed). Where precision and recall are 0 the official script
+--- divides by zero; here the F-score is 0.
 local aib = require "aib"
 
 --- Thresholds of the scenes, metres.

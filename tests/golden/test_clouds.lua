@@ -23,7 +23,8 @@ local function each_case(t, check)
     if case then
       local content = aib.json.decode(aib.system.read_text(golden .. file), file)
       local inputs = content.inputs
-      check(case, support.shared .. "/golden/" .. inputs.est, support.shared .. "/golden/" .. inputs.gt, content.expected)
+      local folder = support.shared .. "/golden/"
+      check(case, folder .. inputs.est, folder .. inputs.gt, content.expected)
       n = n + 1
     end
   end
@@ -120,7 +121,8 @@ return aib.test {
         local r = transform.rotation
         lines[#lines + 1] = ("%d %d 0"):format(i, i)
         for k = 1, 3 do
-          lines[#lines + 1] = ("%.9g %.9g %.9g %.9g"):format(r[k][1], r[k][2], r[k][3], p[k] + noise * math.cos(7 * i + k))
+          local at = p[k] + noise * math.cos(7 * i + k)
+          lines[#lines + 1] = ("%.9g %.9g %.9g %.9g"):format(r[k][1], r[k][2], r[k][3], at)
         end
         lines[#lines + 1] = "0 0 0 1"
       end
@@ -140,7 +142,8 @@ return aib.test {
     t:check(found["tnt.f_score"] > 0.99, "the rounds bring it back")
     t:check(found["align.icp3_rmse"] < 1e-4, "the last round is exact")
     t:check(aib.io.read_cloud(scratch.path .. "/out/precision.ply").has_colors, "errors are coloured")
-    t:check(aib.system.read_text(scratch.path .. "/out/curve.csv"):find("\n0.005,1,1,1\n", 1, true), "the curve ends at 1")
+    local curve = aib.system.read_text(scratch.path .. "/out/curve.csv")
+    t:check(curve:find("\n0.005,1,1,1\n", 1, true), "the curve ends at 1")
   end,
 
   ["eth3d: completeness, accuracy and F-score are its tool's"] = function(t)
@@ -188,8 +191,9 @@ return aib.test {
       assert(os.execute(("python3 -m zipfile -c %s %s"):format(support.quoted(path), table.concat(files, " "))))
       return path
     end
-    local mask = write_npz("mask.npz", { ObsMask = { { { 1 } }, { { 1 } }, { { 0 } } }, BB = { { 0, 0, 0 }, { 2, 0, 0 } },
-      Res = { { 1 } } })
+    local mask = write_npz("mask.npz", {
+      ObsMask = { { { 1 } }, { { 1 } }, { { 0 } } }, BB = { { 0, 0, 0 }, { 2, 0, 0 } }, Res = { { 1 } },
+    })
     local plane = write_npz("plane.npz", { P = { { 1 }, { 0 }, { 0 }, { -0.5 } } })
     local found = values("dtu", {
       estimate = write_line(scratch.path, "est.ply", 0.25, 1, 2, 5, 500), density = 0,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <doctest/doctest.h>
+#include <nanoflann.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,32 @@ std::vector<float> brute_force(const points& from, const points& to) {
       best = std::min(best, (x * x + y * y) + z * z);
     }
     squared.push_back(best);
+  }
+  return squared;
+}
+
+/// What nanoflann asks of points.
+struct adaptor {
+  const points& p;
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
+  [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return p[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+std::vector<float> by_nanoflann(const points& from, const points& to) {
+  using metric = nanoflann::L2_Simple_Adaptor<float, adaptor>;
+  const adaptor target{to};
+  const nanoflann::KDTreeSingleIndexAdaptor<metric, adaptor, 3, std::uint32_t> tree(3, target,
+                                                                                    {10});
+  std::vector<float> squared(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::uint32_t index = 0;
+    tree.knnSearch(from[i].data(), 1, &index, &squared[i]);
   }
   return squared;
 }
@@ -159,4 +186,18 @@ TEST_CASE("the tree costs at most 20 bytes a point") {
   const points p = uniform(100000, 1, 14);
   const search::box_tree tree(p, search::common_curve(p, p));
   CHECK(tree.bytes() <= 20 * p.size());
+}
+
+TEST_CASE("nearest neighbours equal nanoflann's, many points, also in map coordinates") {
+  points estimate = sheet(30000, 0.01, 12);
+  const points reference = sheet(40000, 0, 13);
+  for (int i = 0; i < 1500; ++i)
+    estimate.push_back(uniform(1, 8, static_cast<std::uint64_t>(i))[0]);
+  CHECK(tree_search(estimate, reference) == by_nanoflann(estimate, reference));
+  CHECK(tree_search(reference, estimate) == by_nanoflann(reference, estimate));
+  const Eigen::Vector3f utm(458000, 5429000, 160);  // in float: many ties, half a metre apart
+  points far_estimate = estimate, far_reference = reference;
+  for (auto& p : far_estimate) p += utm;
+  for (auto& p : far_reference) p += utm;
+  CHECK(tree_search(far_estimate, far_reference) == by_nanoflann(far_estimate, far_reference));
 }
