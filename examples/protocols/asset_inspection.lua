@@ -120,52 +120,69 @@ local function add_frame(errors, name, unit, truth, files, input)
   errors:add(est, ref, { name = name })
 end
 
-local function score_depth(unit, truth, files, frame, input, cell)
-  local errors = aib.depth.accumulate { transform = { scale = frame.scale or 1 } }
-  for _, name in ipairs(files:present(unit.result.depth, truth.depth_names)) do
-    add_frame(errors, name, unit, truth, files, input)
-  end
+--- Adds what an accumulator of frames found. Metrics of a length are those of `scaled`: frames whose scale is known,
+--- nil where there is none.
+local function add_depth(errors, scaled, truth, how_scaled, input, cell, frames)
   local mean = cell:attempt(function() return errors:result() end, "depth") or { n_defined = 0 }
+  local of_length = scaled == errors and mean
+    or scaled and cell:attempt(function() return scaled:result() end) or { n_defined = 0 }
   local how = { rule = input.rule, frames_expected = #truth.depth_names }
   for _, metric in ipairs(depth_metrics) do
-    local known = frame.scale or not metric.of_length
-    cell:add("depth." .. metric.name, known and mean[metric.name] or nil, {
-      better = metric.better, n = mean.n_defined, convention = "mean over frames",
-      options = metric.of_length and with(frame.how, how) or how,
+    local from = metric.of_length and of_length or mean
+    cell:add("depth." .. metric.name, from[metric.name], {
+      better = metric.better, n = scaled and from.n_defined or mean.n_defined, convention = "mean over frames",
+      options = metric.of_length and with(how_scaled, how) or how,
     })
   end
   local empty = #errors - mean.n_defined
   if empty > 0 then cell:note(("depth: %d of %d frames have no valid pixel"):format(empty, #errors)) end
+  local kept = { names = aib.json.list(), values = aib.json.list() }
+  for _, frame in ipairs(errors:frames()) do
+    if frame.srmse then
+      kept.names[#kept.names + 1], kept.values[#kept.values + 1] = frame.name, frame.srmse
+    end
+  end
+  frames["depth.srmse"] = kept
+end
+
+local function score_depth(unit, truth, files, frame, input, cell, frames)
+  local errors = aib.depth.accumulate { transform = { scale = frame.scale or 1 } }
+  for _, name in ipairs(files:present(unit.result.depth, truth.depth_names)) do
+    add_frame(errors, name, unit, truth, files, input)
+  end
+  add_depth(errors, frame.scale and errors, truth, frame.how, input, cell, frames)
 end
 
 -- Points --------------------------------------------------------------------------------------------------------------
 
---- Points that stand for the true surface: given ones, or samples of the mesh. Records how fine they are.
+--- Points that stand for the true surface: given ones, or samples of the mesh, and the accuracy that a perfect cloud
+--- gets against those.
 local function reference_points(truth, input)
   if truth.points or not truth.mesh then return truth.points end
-  return aib.scene.cropped(truth, aib.sample.mesh(truth.mesh, { n = input.samples, seed = input.seed }))
+  local samples, info = aib.sample.mesh(truth.mesh, { n = input.samples, seed = input.seed })
+  return aib.scene.cropped(truth, samples), info.floor
 end
 
 local distance_metrics <const> = {
   "accuracy", "completeness", "chamfer", "chamfer_mean", "f1_distance", "accuracy_median", "completeness_median",
 }
 
-local function score_cloud(unit, truth, files, frame, input, cell)
-  local result = unit.result
-  local all = result.cloud == "model" and frame.model.points or aib.scene.read_cloud(files, result.cloud)
-  if not frame.scale then
-    cell:note("points: they cannot be brought into the frame of the truth")
-    return
-  end
-  if frame.transform then all = frame.transform * all end
+--- Adds the distances between a cloud in the frame of the truth and the true surface.
+local function add_cloud(all, truth, frame_how, input, cell)
   local cloud = aib.scene.cropped(truth, all)
   local compared = cell:attempt(function()
     return aib.cloud.compare(cloud, truth.reference, { tau = input.tau })
   end, "points") or { precision = {}, recall = {}, f_score = {} }
   local sampled = not truth.points
-  local how = with(frame.how, { samples = sampled and input.samples or nil, seed = sampled and input.seed or nil })
+  local how = with(frame_how, { samples = sampled and input.samples or nil, seed = sampled and input.seed or nil })
   for _, name in ipairs(distance_metrics) do
     cell:add("cloud." .. name, compared[name], { unit = "m", better = "lower", n = #cloud, options = how })
+  end
+  if truth.floor and compared.accuracy then
+    cell:add("cloud.sampling_floor", truth.floor, { unit = "m", n = input.samples })
+    cell:add("cloud.accuracy_exact", aib.mesh.distances(cloud, truth.mesh):mean(), {
+      unit = "m", better = "lower", n = #cloud, options = frame_how, convention = "point to triangle",
+    })
   end
   for _, tau in ipairs(input.tau) do
     for _, name in ipairs { "precision", "recall", "f_score" } do
@@ -175,6 +192,202 @@ local function score_cloud(unit, truth, files, frame, input, cell)
     end
   end
   cell:add("cloud.n_outside", #all - #cloud, { n = #all })
+end
+
+local function score_cloud(unit, truth, files, frame, input, cell)
+  local result = unit.result
+  local all = result.cloud == "model" and frame.model.points or aib.scene.read_cloud(files, result.cloud)
+  if not frame.scale then
+    cell:note("points: they cannot be brought into the frame of the truth")
+    return
+  end
+  add_cloud(frame.transform and frame.transform * all or all, truth, frame.how, input, cell)
+end
+
+-- Batches -------------------------------------------------------------------------------------------------------------
+
+--- Frames without names are those of the scene, in its order, where there are as many.
+local function name_frames(method, truth, cell)
+  local n, named = 0, true
+  for _, batch in ipairs(method.batches) do n, named = n + #batch.names, named and batch.named end
+  if named or n ~= #truth.names then return end
+  cell:note(("%d frames without names: they are taken for the scene's images in their order"):format(n))
+  return truth.names
+end
+
+--- What the method left, with names.
+local function open_method(unit, truth, files, cell)
+  local result = unit.result
+  local how = { kind = result.kind, layout = result.layout, names = result.names }
+  local folder = files:whole_folder(result.output)
+  local method = aib.method.open(folder, how)
+  local names = not how.names and name_frames(method, truth, cell)
+  if names then
+    how.names = names
+    method = aib.method.open(folder, how)
+  end
+  cell:note(("%s: %s"):format(method.kind, method.why))
+  for _, batch in ipairs(method.batches) do
+    for _, warning in ipairs(batch.warnings) do cell:note(("batch %s: %s"):format(batch.name, warning)) end
+  end
+  return method
+end
+
+--- How each batch lies: scale, residual, what is left of it on the half that was not fitted, the seam.
+local function report_batches(fit, how, cell)
+  for _, part in ipairs(fit.parts) do
+    local sub = #fit.parts > 1 and cell:within { batch = part.name } or cell
+    local a = part.alignment
+    if a then
+      local function add(name, value, unit) sub:add("align." .. name, value, { unit = unit, n = a.n_inliers,
+        options = how, better = unit and "lower" or nil }) end
+      add("rmse", a.rmse, "m")
+      add("scale", a.transform.scale)
+      add("condition", a.condition)
+      add("n_outliers", #a.outliers)
+      if part.half_rmse then add("half_rmse", part.half_rmse, "m") end
+      if part.seam then add("seam", part.seam, "m") end
+      for _, warning in ipairs(a.warnings) do sub:note("alignment: " .. warning) end
+    else
+      sub:note("no alignment to the truth: " .. part.degenerate)
+    end
+  end
+end
+
+local function add_auc(cell, name, auc, input)
+  if not auc or not auc.auc then return end
+  local how = { better = "higher", n = auc.n_pairs, convention = input.auc }
+  cell:add(name, auc.auc, how)
+  cell:add(name .. "_signed", auc.auc_signed, how)
+end
+
+--- Poses of all batches; `given`: they are the true ones, of which no error means anything.
+local function score_batch_poses(fit, given, truth, how, input, cell)
+  cell:add("pose.registration_rate", #fit.est / #truth.names, { better = "higher", n = #truth.names })
+  cell:add("pose.n_registered", #fit.est, { better = "higher" })
+  if given then
+    cell:add("pose.auc30", nil, { better = "higher", note = "the poses are given" })
+    return
+  end
+  local auc = cell:attempt(function() return aib.batches.auc(fit, { convention = input.auc }) end, "pose.auc30") or {}
+  add_auc(cell, "pose.auc30", auc.all, input)
+  if #fit.parts > 1 then
+    add_auc(cell, "pose.auc30_intra", auc.intra, input)
+    add_auc(cell, "pose.auc30_cross", auc.cross, input)
+  end
+  local ape = aib.batches.ape(fit)
+  if ape then
+    cell:add("pose.ape_rmse", ape.all.rmse, { unit = "m", better = "lower", n = ape.all.count, options = how })
+    if ape.kept then
+      cell:add("pose.ape_rmse_kept", ape.kept.rmse, { unit = "m", better = "lower", n = ape.kept.count, options = how })
+    end
+  end
+end
+
+--- Depth of all batches, each at the scale of its alignment; where there is none, what needs no scale.
+local function score_batch_depth(fit, truth, how, input, cell, frames)
+  local has_truth = {}
+  for _, name in ipairs(truth.depth_names) do has_truth[name] = true end
+  local all, scaled = aib.depth.accumulate(), aib.depth.accumulate()
+  for _, part in ipairs(fit.parts) do
+    local scale = part.alignment and part.alignment.transform.scale
+    local own = aib.depth.accumulate { transform = { scale = scale or 1 } }
+    for i, name in ipairs(part.batch.names) do
+      local est <close> = has_truth[name] and part.batch.depth(i) or nil
+      if est then
+        local full <close> = truth.depth(name)
+        local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
+        own:add(est, ref, { name = name })
+      end
+    end
+    all:merge(own)
+    if scale then scaled:merge(own) end
+  end
+  if #all > 0 then add_depth(all, #scaled > 0 and scaled or nil, truth, how, input, cell, frames) end
+end
+
+--- Points of all batches: from their depth maps, or the method's own cloud where it has one frame of reference.
+local function score_batch_cloud(unit, fit, truth, files, how, input, cell)
+  local part = fit.parts[1]
+  if unit.result.cloud and #fit.parts == 1 and part.alignment then
+    local cloud = aib.scene.read_cloud(files, unit.result.cloud)
+    return add_cloud(part.alignment.transform * cloud, truth, how, input, cell)
+  end
+  local cut = { min_confidence = unit.result.confidence or input.confidence, stride = input.stride }
+  local cloud, info = aib.batches.cloud(fit, cut)
+  if #cloud == 0 then return end
+  cell:add("cloud.share_kept", (info.n_valid - info.n_unsure) / info.n_valid, { n = info.n_valid })
+  local rules = {}
+  for _, p in ipairs(fit.parts) do rules[p.batch.confidence and p.batch.rule or "none"] = true end
+  add_cloud(cloud, truth, with(how, {
+    confidence = cut.min_confidence, confidence_rule = next(rules), stride = cut.stride,
+  }), input, cell)
+end
+
+--- Names that match with their folders, or without them where none does.
+local function name_rules(batches, truth)
+  for _, batch in ipairs(batches) do
+    if batch.trajectory and aib.pose.registration_rate(batch.trajectory, truth.trajectory).n_registered > 0 then
+      return nil
+    end
+  end
+  return { ignore_folder = true }
+end
+
+local function evaluate_output(unit, truth, files, input, cell, frames)
+  local method = open_method(unit, truth, files, cell)
+  local given = unit.method.parameters == "ground truth"
+  for _, batch in ipairs(method.batches) do
+    if not given and batch.trajectory and aib.method.poses_are_given(batch.trajectory, truth.trajectory) then
+      given = true
+      cell:note("its poses are the true ones, though the parameters are called estimated")
+    end
+  end
+  local how = { alignment = given and "none" or input.alignment }
+  how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
+  local fit = aib.batches.align(method.batches, truth.trajectory, {
+    outlier_factor = how.outlier_factor, given = given, names = name_rules(method.batches, truth),
+  })
+  if #fit.parts == 0 then
+    cell:note("no pose of it is of an image of the scene")
+    return
+  end
+  score_batch_poses(fit, given, truth, how, input, cell)
+  if not given then report_batches(fit, how, cell) end
+  local cameras = aib.batches.cameras(method.batches)
+  if cameras and not given then
+    cell:add("camera.focal_mre", function()
+      return aib.pose.focal_error(cameras, truth.cameras, { over = "views" }).mre
+    end, { better = "lower", convention = "mean over views" })
+  end
+  if method.batches[1].depth then score_batch_depth(fit, truth, how, input, cell, frames) end
+  score_batch_cloud(unit, fit, truth, files, how, input, cell)
+end
+
+--- Sizes by method of --batch NAME=SIZE.
+local function batch_sizes(input)
+  local sizes = {}
+  for _, text in ipairs(input.batch) do
+    local name, size = text:match "^(.+)=(%d+)$"
+    if not name or tonumber(size) < 1 then
+      error(("--batch: METHOD=SIZE expected, found '%s'"):format(text), 0)
+    end
+    sizes[name] = sizes[name] or {}
+    table.insert(sizes[name], math.tointeger(tonumber(size)))
+  end
+  return sizes
+end
+
+--- An unbatched method cut into batches as a batched one has them: what its poses would score then.
+local function score_as_batches(model, size, truth, input, cell)
+  local batch = { names = model.trajectory.names, trajectory = model.trajectory, rule = "raw" }
+  local parts = aib.batches.split(batch, truth.names, size)
+  local how = { alignment = input.alignment, batch = size }
+  how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
+  local fit = aib.batches.align(parts, truth.trajectory, { outlier_factor = how.outlier_factor })
+  if #fit.parts == 0 then return end
+  score_batch_poses(fit, false, truth, how, input, cell)
+  report_batches(fit, how, cell)
 end
 
 -- All -----------------------------------------------------------------------------------------------------------------
@@ -193,17 +406,29 @@ local function frame_of(unit, models, scored)
   return { transform = alignment.transform, scale = alignment.transform.scale, model = model, how = model.how }
 end
 
-local function evaluate(unit, truth, files, input, cell)
+local function evaluate(unit, truth, files, input, cell, frames)
+  if unit.result.output then return evaluate_output(unit, truth, files, input, cell, frames) end
   local models = models_of(unit.result, files)
   local scored = aib.submodels.largest(models)
   if unit.method.parameters == "ground truth" then
     cell:add("pose.auc30", nil, { better = "higher", note = "the poses are given" })
   elseif scored then
     score_models(models, truth, input, cell)
+    for _, size in ipairs(batch_sizes(input)[unit.method.name] or {}) do
+      score_as_batches(scored, size, truth, input,
+        cell:within { method = ("%s, batches of %d"):format(unit.method.name, size) })
+    end
   end
   local frame = frame_of(unit, models, scored)
-  if unit.result.depth then score_depth(unit, truth, files, frame, input, cell) end
+  if unit.result.depth then score_depth(unit, truth, files, frame, input, cell, frames) end
   if unit.result.cloud then score_cloud(unit, truth, files, frame, input, cell) end
+end
+
+local function has_record(report, name)
+  for _, record in ipairs(report:records()) do
+    if record.name == name then return true end
+  end
+  return false
 end
 
 local function add_tables(report, input)
@@ -222,6 +447,11 @@ local function add_tables(report, input)
     beside = { { field = "n" } }, notes = { "Beside it: images expected." },
   }
   report:table { title = "Focal length, mean relative error", metrics = { { "camera.focal_mre", percent = true } } }
+  if has_record(report, "pose.auc30_intra") then
+    report:table { title = "Poses, AUC30 within and across batches", down = { "method" },
+      across = { "scene", "condition", "metric" }, metrics = {
+        { "pose.auc30_intra", label = "within" }, { "pose.auc30_cross", label = "across" } } }
+  end
   report:table { title = "Points, chamfer distance", metrics = { "cloud.chamfer" } }
   report:table { title = "Points, F1 of accuracy and completeness", metrics = { "cloud.f1_distance" } }
 end
@@ -234,7 +464,48 @@ local function state_conventions(report, input)
   report:convention("cloud.f1_distance", "harmonic mean of accuracy and completeness, a distance")
 end
 
+--- Changes of depth errors over the conditions of each scene, for each method that has frames in several.
+local function add_sensitivity(report, parts)
+  local order, levels = {}, {}
+  for _, part in ipairs(parts) do
+    local frames, group = part.frames["depth.srmse"], part.group
+    if frames and group.condition then
+      local id = group.scene .. "\0" .. group.method
+      if not levels[id] then order[#order + 1], levels[id] = id, {} end
+      table.insert(levels[id], { condition = group.condition, names = frames.names, values = frames.values })
+    end
+  end
+  for _, id in ipairs(order) do
+    local scene, method = id:match "^(.*)%z(.*)$"
+    local list = levels[id]
+    local contrast = ("%s to %s"):format(list[1].condition, list[#list].condition)
+    aib.sensitivity.add(report:within { scene = scene, method = method, contrast = contrast }, "srmse", list)
+  end
+end
+
+--- Numbers of frames, for JSON.
+local function frame_lists(parts)
+  local lists = aib.json.list()
+  for _, part in ipairs(parts) do
+    for metric, frames in pairs(part.frames) do
+      lists[#lists + 1] = { metric = metric, group = part.group, names = frames.names, values = frames.values }
+    end
+  end
+  return lists
+end
+
+--- What follows from all units together, in this run or in merged shards.
+local function finish(input, report, parts, files)
+  add_tables(report, input)
+  state_conventions(report, input)
+  add_sensitivity(report, parts)
+  if input.per_frame then report.store.frames = frame_lists(parts) end
+  for label, print in pairs(files:sources()) do report:source(label, print) end
+  aib.consistency.check_report(report)
+end
+
 return aib.protocol {
+  finish = finish,
   name = "asset_inspection",
   title = "Asset inspection benchmark",
   cite = "Gray et al., A 3D Reconstruction Benchmark for Asset Inspection",
@@ -251,6 +522,15 @@ return aib.protocol {
       help = "pixel of the true depth that stands for one of a smaller map" },
     samples = { kind = "integer", default = 100000, min = 1, help = "points sampled on a mesh of the truth" },
     seed = { kind = "integer", default = 1, min = 0, help = "of the sampling" },
+    batch = { kind = "list", of = "text", default = {},
+      help = "METHOD=SIZE: also score an unbatched method in batches of so many images" },
+    confidence = { kind = "number", default = 0.75,
+      help = "points of depth maps are kept above it, by the method's rule" },
+    stride = { kind = "integer", default = 2, min = 1,
+      help = "every so many rows and columns of depth maps give points" },
+    results = { kind = "path", default = "", help = "folder that keeps finished units, which are reused" },
+    shard = { kind = "path", default = "", help = "INDEX/COUNT: evaluate a part of the units, for aib-lua merge" },
+    per_frame = { kind = "flag", help = "keep the numbers of frames in the JSON, for paired comparisons" },
     tau = { kind = "list", of = "number", unit = "m", default = { 0.02, 0.05, 0.1 },
       help = "thresholds of precision, recall and F-score" },
     min_coverage = { kind = "number", default = 0.5, min = 0, max = 1,
@@ -258,21 +538,28 @@ return aib.protocol {
   },
   run = function(input, report)
     local benchmark = aib.benchmark.open(input.benchmark)
-    local files = benchmark.files
-    add_tables(report, input)
-    state_conventions(report, input)
-    local progress <close> = aib.progress(#benchmark.units, "units")
     local truth
-    for _, unit in ipairs(benchmark.units) do
-      local cell = report:within(unit.group)
-      progress:step(cell:group_name())
-      if not truth or truth.spec ~= unit.scene then
-        truth = aib.scene.open(unit.scene, files)
-        truth.reference = reference_points(truth, input)
-      end
-      if unit.result then evaluate(unit, truth, files, input, cell) end
-    end
-    for label, print in pairs(files:sources()) do report:source(label, print) end
-    aib.consistency.check_report(report)
+    local parts = aib.units.run {
+      report = report, files = benchmark.files, units = benchmark.units,
+      results = input.results ~= "" and input.results or nil, shard = input.shard,
+      name = function(unit) return report:within(unit.group):group_name() end,
+      group = function(unit) return unit.group end,
+      describe = function(unit)
+        return { scene = unit.scene, condition = unit.condition, result = unit.result, batch = input.batch,
+          method = { name = unit.method.name, parameters = unit.method.parameters } }
+      end,
+      evaluate = function(unit, part)
+        if not truth or truth.spec ~= unit.scene then
+          truth = aib.scene.open(unit.scene, aib.files.new(input.benchmark))
+          truth.reference, truth.floor = reference_points(truth, input)
+        end
+        local files = aib.files.new(input.benchmark)
+        if unit.result then
+          evaluate(unit, truth, files, input, part.report:within(unit.group), part.frames)
+        end
+        return { truth.files, files }
+      end,
+    }
+    finish(input, report, parts, benchmark.files)
   end,
 }

@@ -12,6 +12,8 @@
 ---     poses       trajectory with image names, any format that aib.io.read_trajectory reads
 ---     cameras     cameras file or folder, where the poses bring none
 ---     depth       pattern of depth maps, {stem} and {name} stand for the image
+---     output      instead of models and poses: folder of what a method left, see aib.method; with kind, names, layout
+---                 and confidence (points of depth maps are kept above it) where the content does not tell
 ---     cloud       point cloud; "model": the sparse points of the scored model
 ---     frame       "method" | "reference": the frame of cloud and depth (default: that of the parameters)
 ---     model       name of the sub-model whose frame it is (default: the scored one)
@@ -34,7 +36,8 @@ local scene_fields <const> = {
 local method_fields <const> = { name = "string", parameters = "string", results = "table", cite = "string" }
 local result_fields <const> = {
   scene = "string", condition = "string", models = "string", poses = "string", cameras = "any", depth = "string",
-  cloud = "string", frame = "string", model = "string",
+  cloud = "string", frame = "string", model = "string", output = "string", kind = "string", names = "any",
+  layout = "table", confidence = "number",
 }
 local parameters <const> = { estimated = true, ["ground truth"] = true }
 local frames <const> = { method = true, reference = true }
@@ -89,6 +92,7 @@ local function check_result(result, scenes, fail)
   end
   if result.frame then check_name(result.frame, frames, "frame", fail) end
   if result.models and result.poses then fail("models or poses expected, found both") end
+  if result.output and (result.models or result.poses) then fail("output or models and poses expected, found both") end
 end
 
 --- Names are those of groups in a report: two things of one name would be one.

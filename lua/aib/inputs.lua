@@ -4,7 +4,7 @@
 --- Typed inputs of a protocol: how each kind is read from a command line, checked, and shown in --help.
 ---
 --- An input is
----   kind      "path" | "file" | "folder" | "number" | "integer" | "choice" | "list" | "flag"
+---   kind      "text" | "path" | "file" | "folder" | "number" | "integer" | "choice" | "list" | "flag"
 ---   default   value where none is given; an input without one has to be given (a flag is false)
 ---   unit      of a number: one of another unit of that kind is converted ("5cm" where the unit is "m")
 ---   min, max  bounds of a number, both allowed
@@ -67,6 +67,8 @@ function read.path(text)
 end
 read.file, read.folder = read.path, read.path
 
+function read.text(text) return text end
+
 function read.choice(text) return text end
 
 function read.flag(text)
@@ -78,7 +80,7 @@ end
 --- Types of values that a script or a default gives.
 local lua_types <const> = {
   number = "number", integer = "number", path = "string", file = "string", folder = "string", choice = "string",
-  flag = "boolean", list = "table",
+  flag = "boolean", list = "table", text = "string",
 }
 
 --- Checks of a value, whether it came as text or from Lua. Each gives nothing, or what was expected. A file that is

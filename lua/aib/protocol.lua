@@ -8,6 +8,8 @@
 ---     inputs = { est = { kind = "file", help = "..." }, max_depth = { kind = "number", unit = "m", default = 80 } },
 ---     run = function(input, report) report:add("rmse", ..., { unit = "m", better = "lower" }) end,
 ---   }
+---
+--- finish = function(input, report, parts, files) says what follows from all units of aib.units, for aib-lua merge.
 local aib = require "aib"
 local command_line = require "aib.command_line"
 local failure = require "aib.failure"
@@ -22,7 +24,7 @@ protocol.__name = "aib.protocol"
 protocol.__tostring = function(self) return ("protocol(%s)"):format(self.name) end
 
 local fields <const> = { name = "string", title = "string", cite = "string", help = "string", inputs = "table",
-  run = "function" }
+  run = "function", finish = "function" }
 local exit <const> = { ok = 0, script = 1, usage = 2, input = 3, stopped = 130 }
 local exit_of_kind <const> = { io = exit.input, format = exit.input, stopped = exit.stopped }
 
@@ -138,6 +140,6 @@ return function(spec)
   give_places(list)
   return setmetatable({
     name = spec.name, title = spec.title or spec.name, cite = spec.cite, help = spec.help, inputs = list,
-    body = spec.run,
+    body = spec.run, finish = spec.finish,
   }, protocol)
 end

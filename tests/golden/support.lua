@@ -41,6 +41,9 @@ function M.protocol(name) return assert(loadfile(("%s/examples/protocols/%s.lua"
 local program = 0
 while arg[program - 1] do program = program - 1 end
 
+--- Path of that program.
+function M.program() return arg[program] end
+
 --- Runs aib-lua, the program that runs this test. Returns what it printed, what it complained of, and its exit code.
 function M.aib_lua(...)
   local words = { M.quoted(arg[program]) }

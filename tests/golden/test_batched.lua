@@ -127,7 +127,67 @@ local function compare_cloud(t, case, rule, expected, offset)
   end
 end
 
+--- A benchmark over what exporters left, beside links to it; its records by "scene/method/batch/metric".
+local function protocol_records()
+  local folder <close> = support.scratch_folder()
+  support.link(shared .. "/gt", folder.path .. "/gt")
+  support.link(shared .. "/batched/methods", folder.path .. "/methods")
+  local scenes, methods = {}, {}
+  for _, scene in ipairs { "crane", "office" } do
+    local poses = aib.json.decode(aib.system.read_text(("%s/gt/%s/transforms.json"):format(shared, scene)))
+    for _, frame in ipairs(poses.frames) do frame.file_path = frame.file_path:match "[^/]*$" end
+    aib.system.write_text(("%s/%s.json"):format(folder.path, scene), aib.json.encode(poses))
+    scenes[#scenes + 1] = ([[{ name = "%s", poses = "%s.json", depth = "gt/%s/depth/{stem}.exr",
+      points = "gt/%s/gt_points.ply" }]]):format(scene, scene, scene, scene)
+  end
+  for _, method in ipairs { "da3", "da3_gtposes", "vggt", "pi3", "cut3r" } do
+    local results = {}
+    for _, scene in ipairs { "crane", "office" } do
+      if aib.system.is_folder(("%s/batched/methods/%s/%s"):format(shared, method, scene)) then
+        results[#results + 1] = ([[{ scene = "%s", output = "methods/%s/%s" }]]):format(scene, method, scene)
+      end
+    end
+    methods[#methods + 1] = ([[{ name = "%s", parameters = "estimated", results = { %s } }]]):format(method,
+      table.concat(results, ", "))
+  end
+  aib.system.write_text(folder.path .. "/benchmark.lua", ("return { scenes = { %s }, methods = { %s } }"):format(
+    table.concat(scenes, ", "), table.concat(methods, ", ")))
+  local found = {}
+  local report = support.protocol("asset_inspection"):run { benchmark = folder.path, tau = { 0.05, 0.1 } }
+  for _, r in ipairs(report:records()) do
+    found[table.concat({ r.group.scene, r.group.method, r.group.batch or "", r.name }, "/")] = r
+  end
+  return found, table.concat(report:note_lines(), "\n")
+end
+
 return aib.test {
+  ["the protocol gives the recorded numbers of whole methods"] = function(t)
+    if not aib.system.is_file(shared .. "/batched/reference_e2e.json") then t:skip "the shared folder is not here" end
+    local found, notes = protocol_records()
+    local function value(set, name)
+      local method, scene = set:match "([^/]+)/(.+)"
+      local record = found[("%s/%s//%s"):format(scene, method, name)]
+      return record and record.value
+    end
+    for _, set in ipairs { "da3/crane", "da3/office", "vggt/office", "pi3/crane", "pi3/office", "cut3r/office" } do
+      local expected = expected_of(set)
+      near(t, value(set, "depth.srmse"), expected.depth.centre.mean_sq, 1e-6, set)
+      near(t, value(set, "depth.coverage"), expected.depth.centre.mean_coverage, 1e-9, set)
+      near(t, value(set, "cloud.chamfer"), expected.cloud["0.75"].chamfer_sum, 1e-5, set)
+      near(t, value(set, "cloud.f1_distance"), expected.cloud["0.75"].f1_distance, 1e-5, set)
+      near(t, value(set, "pose.ape_rmse"), expected.ate_pooled.rmse_all, 2e-6, set)
+      near_auc(t, { auc = value(set, "pose.auc30"), n_pairs = expected.pose_all_pairs.n_pairs },
+        expected.pose_all_pairs, set)
+    end
+    t:equal(value("da3_gtposes/crane", "pose.auc30"), nil)
+    t:contains(notes, "its poses are the true ones, though the parameters are called estimated")
+    near(t, value("da3_gtposes/crane", "depth.srmse"), expected_of("da3_gtposes/crane").depth.centre.mean_sq, 1e-6)
+    t:contains(notes, "office / pi3 / batch_000: no alignment to the truth")
+    t:contains(notes, "office / pi3 / batch_005: no alignment to the truth")
+    near(t, found["crane/da3/batch_001/align.scale"].value,
+      expected_of("da3/crane").batches[2].sim3_est_to_gt.scale, 1e-6)
+  end,
+
   ["methods are told from what they left"] = function(t)
     local kinds = { da3 = "da3", da3_gtposes = "da3", vggt = "vggt", pi3 = "pi3", cut3r = "cut3r", monst3r = "dust3r" }
     each(t, function(case, set) t:equal(case.method.kind, kinds[set:match "[^/]+"], set) end)

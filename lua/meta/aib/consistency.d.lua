@@ -9,7 +9,8 @@ local consistency = {}
 ---Sentences about what is impossible among the numbers of one group.
 ---@param values table<string, number>  # by metric name
 ---@param rounding? number  # half a unit of the last digit of a printed table
----@return string[]
+---@return string[] impossible
+---@return string[] empty  # no contradiction, but it tells nothing: an accuracy below that of a perfect cloud
 function consistency.check(values, rounding) end
 
 ---Checks every group of a report and notes what is impossible.

@@ -3,7 +3,7 @@ error("Cannot require a meta file")
 
 ---One input of a protocol. It is given as `--key value`, by place where it has one, or by name from Lua.
 ---@class aib.protocol.Input
----@field kind "path"|"file"|"folder"|"number"|"integer"|"choice"|"list"|"flag"
+---@field kind "text"|"path"|"file"|"folder"|"number"|"integer"|"choice"|"list"|"flag"
 ---@field default? any  # an input without one has to be given; a flag is false
 ---@field unit? string  # of a number: "5cm" is 0.05 where it is "m"
 ---@field min? number
@@ -20,6 +20,7 @@ error("Cannot require a meta file")
 ---@field help? string
 ---@field inputs? table<string, aib.protocol.Input>
 ---@field run fun(input: table, report: aib.Report)
+---@field finish? fun(input: table, report: aib.Report, parts: aib.units.Part[], files: table)  # what follows from all units, for aib-lua merge
 
 ---@class aib.Protocol
 local protocol = {}

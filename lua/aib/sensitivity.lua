@@ -1,0 +1,77 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- How numbers of frames change over conditions of one scene (soiling levels): the frames are the same views, so that
+--- differences are taken frame by frame, and neighbours are drawn together, since they overlap.
+local aib = require "aib"
+
+local M = {}
+
+--- Frames that every condition has, in the order of the first: list of { values by condition }.
+local function paired(levels)
+  local by_name = {}
+  for k, level in ipairs(levels) do
+    for i, name in ipairs(level.names) do
+      by_name[name] = by_name[name] or {}
+      by_name[name][k] = level.values[i]
+    end
+  end
+  local frames = {}
+  for _, name in ipairs(levels[1].names) do
+    local values, complete = by_name[name], true
+    for k = 1, #levels do complete = complete and values[k] ~= nil end
+    if complete then frames[#frames + 1] = values end
+  end
+  return frames
+end
+
+--- Least-squares slope of values at 1, 2, ... n.
+local function slope_of(values, n)
+  local mean, sum, square = (n + 1) / 2, 0, 0
+  for k = 1, n do
+    sum, square = sum + (k - mean) * values[k], square + (k - mean) ^ 2
+  end
+  return sum / square
+end
+
+--- What the levels, each { condition =, names =, values = }, in order, tell of one metric:
+---   change   from the first level to the last: { mean =, low =, high =, deviation = }, of paired differences
+---   slope    per level, the same
+---   within   the change is smaller than this at the interval's level, whatever its sign
+---   n        frames in all levels
+--- Nil where there are less than two levels or no frame in all of them.
+function M.of(levels, options)
+  if #levels < 2 then return nil end
+  local frames = paired(levels)
+  if #frames == 0 then return nil end
+  local changes, slopes = {}, {}
+  for i, values in ipairs(frames) do
+    changes[i], slopes[i] = values[#levels] - values[1], slope_of(values, #levels)
+  end
+  local change, slope = aib.stats.bootstrap(changes, options), aib.stats.bootstrap(slopes, options)
+  return {
+    change = change, slope = slope, within = math.max(math.abs(change.low), math.abs(change.high)), n = #frames,
+  }
+end
+
+--- Adds records and a sentence of one metric to a report.
+function M.add(report, metric, levels, options)
+  local found = M.of(levels, options)
+  if not found then return end
+  local first, last = levels[1].condition, levels[#levels].condition
+  local how = { from = first, to = last, level = options and options.level or 0.95 }
+  local function add(name, value) report:add(("sensitivity.%s_%s"):format(metric, name), value, {
+    n = found.n, options = how, convention = "paired frames, block bootstrap",
+  }) end
+  for _, what in ipairs { "change", "slope" } do
+    add(what, found[what].mean)
+    add(what .. "_low", found[what].low)
+    add(what .. "_high", found[what].high)
+  end
+  add("within", found.within)
+  local sure = found.change.low > 0 and "rises" or found.change.high < 0 and "falls" or "shows no sure change"
+  report:note(("%s from %s to %s %s: %.3g (%.3g to %.3g); insensitive within %.3g"):format(metric, first, last, sure,
+    found.change.mean, found.change.low, found.change.high, found.within))
+end
+
+return M

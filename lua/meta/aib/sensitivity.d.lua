@@ -1,0 +1,33 @@
+---@meta aib.sensitivity
+error("Cannot require a meta file")
+
+---How numbers of frames change over conditions of one scene, from differences of the same views.
+---@class aib.sensitivity
+local sensitivity = {}
+
+---The frames of a condition.
+---@class aib.sensitivity.Level
+---@field condition string
+---@field names string[]
+---@field values number[]
+
+---@class aib.Sensitivity
+---@field change { mean: number, low: number, high: number, deviation: number }  # from the first level to the last
+---@field slope { mean: number, low: number, high: number, deviation: number }  # per level
+---@field within number  # the change is smaller than this at the interval's level
+---@field n integer  # frames in all levels
+
+---Paired differences over levels in their order, with block bootstrap intervals; nil where nothing is paired.
+---@param levels aib.sensitivity.Level[]
+---@param options? { block?: integer, resamples?: integer, level?: number, seed?: integer }
+---@return aib.Sensitivity|nil
+function sensitivity.of(levels, options) end
+
+---Adds the records and a sentence of a metric to a report.
+---@param report aib.Report
+---@param metric string
+---@param levels aib.sensitivity.Level[]
+---@param options? { block?: integer, resamples?: integer, level?: number, seed?: integer }
+function sensitivity.add(report, metric, levels, options) end
+
+return sensitivity

@@ -1,0 +1,145 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- Long evaluations: finished units are reused, what was touched is made again, and an interrupted run, shards and one
+--- run give the same bytes.
+local aib = require "aib"
+local support = require "support"
+
+local script <const> = support.root .. "/examples/protocols/asset_inspection.lua"
+local merge <const> = support.root .. "/examples/protocols/merge.lua"
+local fast <const> = { "--samples", "2000" }
+
+--- Runs a protocol with --json; returns the bytes.
+local function json_of(t, protocol, out, ...)
+  local words = { protocol, ... }
+  table.move({ "--quiet", "--json", out }, 1, 3, #words + 1, words)
+  if protocol == script then table.move(fast, 1, #fast, #words + 1, words) end
+  local _, complaints, code = support.aib_lua(table.unpack(words))
+  t:equal({ complaints, code }, { "", 0 })
+  return aib.system.read_text(out)
+end
+
+--- Names of the kept units by what tells whether they were written again.
+local function states(folder)
+  local out = {}
+  for _, name in ipairs(aib.system.names_in(folder)) do out[name] = aib.system.status(folder .. "/" .. name) end
+  return out
+end
+
+local function copied_benchmark(scratch)
+  local data = scratch.path .. "/data"
+  support.copy_folder(support.root .. "/examples/data", data)
+  return data, scratch.path .. "/kept", scratch.path .. "/out.json"
+end
+
+return aib.test {
+  ["a second run reuses every unit and gives the same bytes"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local plain = json_of(t, script, out, data)
+    local first = json_of(t, script, out, data, "--results", kept)
+    local before = states(kept)
+    local second = json_of(t, script, out, data, "--results", kept)
+    t:check(plain == first and first == second, "the bytes are the same")
+    t:equal(#aib.system.names_in(kept), 9)
+    t:equal(states(kept), before)
+  end,
+
+  ["a file that was touched makes exactly its units again"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local first = json_of(t, script, out, data, "--results", kept)
+    local before = states(kept)
+    local touched = data .. "/methods/glomap/crane/sparse/0/points3D.bin"
+    assert(os.execute("touch -d '2001-02-03' " .. support.quoted(touched)))
+    local second = json_of(t, script, out, data, "--results", kept)
+    local again = {}
+    for name, state in pairs(states(kept)) do
+      if state ~= before[name] then again[#again + 1] = name:match "^(.*)_%x+%.json$" end
+    end
+    t:equal(again, { "crane_GLOMAP" })
+    t:check(first == second, "the bytes are the same")
+  end,
+
+  ["other options make all units again"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    json_of(t, script, out, data, "--results", kept)
+    local before = states(kept)
+    json_of(t, script, out, data, "--results", kept, "--rule", "floor")
+    for name, state in pairs(states(kept)) do t:check(state ~= before[name], name) end
+  end,
+
+  ["a kept unit that is damaged is made again"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local first = json_of(t, script, out, data, "--results", kept)
+    local path = kept .. "/" .. aib.system.names_in(kept)[1]
+    aib.system.write_text(path, aib.system.read_text(path):sub(1, 100))
+    t:check(json_of(t, script, out, data, "--results", kept) == first, "the bytes are the same")
+  end,
+
+  ["a run that was killed goes on, to the same bytes"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local whole = json_of(t, script, out, data)
+    for _, seconds in ipairs { "0.05", "0.1", "0.2" } do
+      os.execute(("timeout -s KILL %s %s %s %s --quiet --json %s --results %s --samples 2000 >/dev/null 2>&1"):format(
+        seconds, support.quoted(support.program()), support.quoted(script), support.quoted(data),
+        support.quoted(out .. ".killed"), support.quoted(kept)))
+    end
+    t:check(json_of(t, script, out, data, "--results", kept) == whole, "the bytes are the same")
+  end,
+
+  ["shards in any order merge to the bytes of one run"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, _, out = copied_benchmark(scratch)
+    local whole = json_of(t, script, out, data, "--per-frame")
+    local shards = {}
+    for i = 1, 4 do
+      shards[i] = ("%s/%d.json"):format(scratch.path, i)
+      json_of(t, script, shards[i], data, "--per-frame", "--shard", i .. "/4")
+    end
+    t:check(json_of(t, merge, out, shards[3], shards[1], shards[4], shards[2]) == whole, "the bytes are the same")
+    local _, complaints, code = support.aib_lua(merge, shards[1], shards[2], shards[4])
+    t:equal(code, 3)
+    t:contains(complaints, "shard 3/4 is missing")
+    _, complaints, code = support.aib_lua(merge, shards[1], shards[1], shards[2], shards[3], shards[4])
+    t:equal(code, 3)
+    t:contains(complaints, "comes twice")
+    _, complaints = support.aib_lua(merge, out)
+    t:contains(complaints, "a shard expected, made by --shard INDEX/COUNT")
+    _, complaints = support.aib_lua(script, data, "--shard", "5/4")
+    t:contains(complaints, "INDEX/COUNT expected, as 3/16, found '5/4'")
+  end,
+
+  ["an unbatched method is cut into batches where that is asked for"] = function(t)
+    local report = support.protocol("asset_inspection"):run {
+      benchmark = support.root .. "/examples/data", samples = 2000, batch = { "COLMAP + SGBM=10" },
+    }
+    local found, n_batches = {}, 0
+    for _, r in ipairs(report:records()) do
+      if r.group.scene == "crane" and r.group.method == "COLMAP + SGBM, batches of 10" then
+        if not r.group.batch then found[r.name] = r.value end
+        if r.group.batch and r.name == "align.scale" then n_batches = n_batches + 1 end
+      end
+    end
+    t:check(n_batches >= 3)
+    t:check(found["pose.auc30_intra"] > 0.9 and found["pose.auc30_cross"] > 0.9)
+  end,
+
+  ["soiling: paired differences say how sensitive a method is"] = function(t)
+    local report = support.protocol("asset_inspection"):run {
+      benchmark = support.root .. "/examples/data", samples = 2000,
+    }
+    local found = {}
+    for _, r in ipairs(report:records()) do
+      if r.group.contrast then found[r.name] = r end
+    end
+    t:equal(found["sensitivity.srmse_change"].n, 16)
+    t:check(found["sensitivity.srmse_change_low"].value < found["sensitivity.srmse_change"].value)
+    t:near(found["sensitivity.srmse_slope"].value, found["sensitivity.srmse_change"].value, 1e-15)  -- two levels
+    t:near(found["sensitivity.srmse_within"].value, -found["sensitivity.srmse_change_low"].value, 1e-15)
+  end,
+}
