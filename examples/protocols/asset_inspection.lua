@@ -465,7 +465,7 @@ local function state_conventions(report, input)
 end
 
 --- Changes of depth errors over the conditions of each scene, for each method that has frames in several.
-local function add_sensitivity(report, parts)
+local function add_sensitivity(report, parts, rule)
   local order, levels = {}, {}
   for _, part in ipairs(parts) do
     local frames, group = part.frames["depth.srmse"], part.group
@@ -479,7 +479,8 @@ local function add_sensitivity(report, parts)
     local scene, method = id:match "^(.*)%z(.*)$"
     local list = levels[id]
     local contrast = ("%s to %s"):format(list[1].condition, list[#list].condition)
-    aib.sensitivity.add(report:within { scene = scene, method = method, contrast = contrast }, "srmse", list)
+    aib.sensitivity.add(report:within { scene = scene, method = method, contrast = contrast }, "srmse", list,
+      { rule = rule })
   end
 end
 
@@ -498,7 +499,7 @@ end
 local function finish(input, report, parts, files)
   add_tables(report, input)
   state_conventions(report, input)
-  add_sensitivity(report, parts)
+  add_sensitivity(report, parts, input.rule)
   if input.per_frame then report.store.frames = frame_lists(parts) end
   for label, print in pairs(files:sources()) do report:source(label, print) end
   aib.consistency.check_report(report)

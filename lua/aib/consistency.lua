@@ -76,8 +76,9 @@ function M.check(values, rounding)
   return found, empty
 end
 
---- Checks every group of a report and notes what is impossible. Returns how many sentences there were.
-function M.check_report(report)
+--- Checks every group of a report and notes what is impossible; `rounding` as of check. Returns how many sentences
+--- there were, and in how many groups.
+function M.check_report(report, rounding)
   local groups, order = {}, {}
   for _, record in ipairs(report:records()) do
     local group = groups[record.group_id]
@@ -88,14 +89,15 @@ function M.check_report(report)
     end
     group.values[record.name] = record.value
   end
-  local count = 0
+  local count, n_groups = 0, 0
   for _, group in ipairs(order) do
-    local found, empty = M.check(group.values)
+    local found, empty = M.check(group.values, rounding)
     for _, sentence in ipairs(found) do report:note(group.name, "impossible: " .. sentence) end
     for _, sentence in ipairs(empty) do report:note(group.name, sentence) end
     count = count + #found
+    if #found > 0 then n_groups = n_groups + 1 end
   end
-  return count
+  return count, n_groups
 end
 
 return M

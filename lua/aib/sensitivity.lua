@@ -34,6 +34,15 @@ local function slope_of(values, n)
   return sum / square
 end
 
+--- The mean of a series of frames and its bootstrap interval. Blocks (10 neighbours by default) are at most a quarter
+--- of the series: longer ones would be the series itself and the interval a point.
+function M.interval(values, options)
+  local how = { block = 10 }
+  for key, value in pairs(options or {}) do how[key] = value end
+  how.block = math.max(1, math.min(how.block, #values // 4))
+  return aib.stats.bootstrap(values, how)
+end
+
 --- What the levels, each { condition =, names =, values = }, in order, tell of one metric:
 ---   change   from the first level to the last: { mean =, low =, high =, deviation = }, of paired differences
 ---   slope    per level, the same
@@ -48,18 +57,19 @@ function M.of(levels, options)
   for i, values in ipairs(frames) do
     changes[i], slopes[i] = values[#levels] - values[1], slope_of(values, #levels)
   end
-  local change, slope = aib.stats.bootstrap(changes, options), aib.stats.bootstrap(slopes, options)
+  local change, slope = M.interval(changes, options), M.interval(slopes, options)
   return {
     change = change, slope = slope, within = math.max(math.abs(change.low), math.abs(change.high)), n = #frames,
   }
 end
 
---- Adds records and a sentence of one metric to a report.
-function M.add(report, metric, levels, options)
-  local found = M.of(levels, options)
+--- Adds records and a sentence of one metric to a report; `depends` is what its records depend on, as their options.
+function M.add(report, metric, levels, depends)
+  local found = M.of(levels)
   if not found then return end
   local first, last = levels[1].condition, levels[#levels].condition
-  local how = { from = first, to = last, level = options and options.level or 0.95 }
+  local how = { from = first, to = last, level = 0.95 }
+  for key, value in pairs(depends or {}) do how[key] = value end
   local function add(name, value) report:add(("sensitivity.%s_%s"):format(metric, name), value, {
     n = found.n, options = how, convention = "paired frames, block bootstrap",
   }) end

@@ -15,7 +15,9 @@ function consistency.check(values, rounding) end
 
 ---Checks every group of a report and notes what is impossible.
 ---@param report aib.Report
+---@param rounding? number  # as of check
 ---@return integer count
-function consistency.check_report(report) end
+---@return integer groups  # that have some
+function consistency.check_report(report, rounding) end
 
 return consistency

@@ -27,7 +27,13 @@ function sensitivity.of(levels, options) end
 ---@param report aib.Report
 ---@param metric string
 ---@param levels aib.sensitivity.Level[]
+---@param depends? table<string, any>  # what they depend on, as their options
+function sensitivity.add(report, metric, levels, depends) end
+
+---The mean of a series of frames and its bootstrap interval; blocks are at most a quarter of the series.
+---@param values number[]
 ---@param options? { block?: integer, resamples?: integer, level?: number, seed?: integer }
-function sensitivity.add(report, metric, levels, options) end
+---@return { mean: number, low: number, high: number, deviation: number } interval
+function sensitivity.interval(values, options) end
 
 return sensitivity
