@@ -6,6 +6,7 @@
 ---   aib-lua depth da3/depth gt/depth --estimate-pattern "*.npy" --align median --per-frame worst.csv --sheet worst.png
 local aib = require "aib"
 local depth_frames = require "aib.depth_frames"
+local failure = require "aib.failure"
 
 local metrics <const> = { "srmse", "si_log_rmse", "silog", "abs_rel", "sq_rel", "rmse", "mae", "rmse_log", "log10",
   "irmse", "imae", "delta1", "delta2", "delta3", "coverage" }
@@ -15,7 +16,7 @@ local function label_names(list)
   local names = {}
   for _, text in ipairs(list) do
     local number, name = text:match("^(%d+)=(.+)$")
-    if not number then error(("--label-names: NUMBER=NAME expected, found '%s'"):format(text), 0) end
+    if not number then failure.raise("argument", ("--label-names: NUMBER=NAME expected, found '%s'"):format(text)) end
     names[math.tointeger(tonumber(number))] = name
   end
   return names

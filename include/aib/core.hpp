@@ -12,3 +12,4 @@
 #include <aib/core/message.hpp>
 #include <aib/core/random.hpp>
 #include <aib/core/simd.hpp>
+#include <aib/core/simd_wide.hpp>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/core/simd.hpp>
+#include <aib/core/simd_wide.hpp>
 
 #include <doctest/doctest.h>
 
@@ -73,4 +74,32 @@ TEST_CASE("floats are converted to doubles") {
   double out[4];
   f64x4::convert(a).store(out);
   for (std::size_t i = 0; i < 4; ++i) CHECK(out[i] == static_cast<double>(a[i]));
+}
+
+TEST_CASE("eight doubles are two times four") {
+  double a[8], b[8], wide[8], narrow[8];
+  for (int i = 0; i < 8; ++i) {
+    a[i] = 0.1 + i * 1.7;
+    b[i] = 20.3 / (i + 1);
+  }
+  b[2] = std::numeric_limits<double>::quiet_NaN();
+  const f64x8 x = f64x8::load(a), y = f64x8::load(b);
+  const auto check = [&](f64x8 found, auto op) {
+    found.store(wide);
+    op(f64x4::load(a), f64x4::load(b)).store(narrow);
+    op(f64x4::load(a + 4), f64x4::load(b + 4)).store(narrow + 4);
+    for (int i = 0; i < 8; ++i)
+      CHECK((wide[i] == narrow[i] || (std::isnan(wide[i]) && std::isnan(narrow[i]))));
+  };
+  check(x + y, [](f64x4 p, f64x4 q) { return p + q; });
+  check(x - y, [](f64x4 p, f64x4 q) { return p - q; });
+  check(x * y, [](f64x4 p, f64x4 q) { return p * q; });
+  check(x / y, [](f64x4 p, f64x4 q) { return p / q; });
+  check(min(x, y), [](f64x4 p, f64x4 q) { return min(p, q); });
+  check(max(x, y), [](f64x4 p, f64x4 q) { return max(p, q); });
+  check(choose(x, y, y, x), [](f64x4 p, f64x4 q) { return choose(p, q, q, p); });
+  check(mantissa(x), [](f64x4 p, f64x4) { return mantissa(p); });
+  check(exponent(x), [](f64x4 p, f64x4) { return exponent(p); });
+  const float floats[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+  CHECK(sum(f64x8::convert(floats)) == 36);
 }

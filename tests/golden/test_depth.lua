@@ -170,4 +170,40 @@ return aib.test {
       support.protocol("depth"):run { estimate = scratch.path .. "/est", reference = scratch.path .. "/gt" }
     end)
   end,
+
+  ["depth_surface: a wall that stands too far, in millimetres and GSD"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    for _, name in ipairs { "est", "gt" } do os.execute("mkdir " .. support.quoted(scratch.path .. "/" .. name)) end
+    local function write(path, depth)
+      local rows = {}
+      for y = 1, 12 do
+        rows[y] = {}
+        for x = 1, 16 do rows[y][x] = depth end
+      end
+      aib.io.write_depth(scratch.path .. "/" .. path, aib.depth.map(rows))
+    end
+    write("gt/a.pfm", 10)
+    write("est/a.pfm", 10.015625)
+    write("gt/b.pfm", 10)
+    write("est/b.pfm", 0)
+    local function run_surface(own)
+      local inputs = { estimate = scratch.path .. "/est", reference = scratch.path .. "/gt", focal = 1000, width = 160 }
+      for key, value in pairs(own) do inputs[key] = value end
+      local values = {}
+      for _, r in ipairs(support.protocol("depth_surface"):run(inputs):records()) do values[r.name] = r.value end
+      return values
+    end
+    local values = run_surface {}
+    t:near(values["surface.mean_gsd"], 10, 1e-9)
+    t:near(values["surface.distance_median"], 15.625, 1e-6)
+    t:near(values["surface.gsd_median"], 1.5625, 1e-6)
+    t:equal({ values["surface.within_1_gsd"], values["surface.within_2_gsd"] }, { 0.0, 1.0 })
+    t:equal(values["depth.frames_without_a_valid_pixel"], 1)
+    t:near(values["surface.normal_mean"], 0, 1e-3)
+    t:near(values["surface.abs_rel_inside"], 0.0015625, 1e-9)
+    t:near(run_surface({ align = "median" })["surface.distance_median"], 0, 1e-3)
+    t:raises("no camera of an image", function()
+      run_surface { focal = 0, cameras = support.root .. "/examples/data/gt/office/poses" }
+    end)
+  end,
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <aib/io/bytes.hpp>
 #include <aib/io/depth.hpp>
+#include <aib/io/depth_frame.hpp>
 #include <aib/io/npy.hpp>
 #if defined(AIB_WITH_NPZ)
 #include <aib/io/npz_write.hpp>
@@ -248,4 +249,31 @@ TEST_CASE("a dense map that colmap wrote is read") {
       "scenes/methods/sgbm_gtposes/crane/stereo/depth_maps/000005.png.photometric.bin");
   CHECK(map.values.width() == 480);
   CHECK(map.values.height() == 270);
+}
+
+TEST_CASE("a frame is read at the size of its estimate, mask and labels too") {
+  raster::image<float> reference(4, 2);
+  std::iota(reference.begin(), reference.end(), 1.0f);
+  io::depth_frame_files files{"f", scratch.folder() / "est.pfm", scratch.folder() / "ref.npy"};
+  io::write_depth(files.estimate, raster::image<float>(2, 1, 2).view());
+  io::write_depth(files.reference, reference.view());
+  auto frame = io::read_depth_frame(files, {.estimate = {.scale = 2}});
+  CHECK(frame.name == "f");
+  CHECK(values(frame.estimate) == std::vector<float>{1, 1});
+  CHECK(values(frame.reference) == std::vector<float>{6, 8});
+  CHECK(frame.mask.empty());
+  frame = io::read_depth_frame(files, {.rule = raster::nearest_rule::floor});
+  CHECK(values(frame.reference) == std::vector<float>{1, 3});
+#if defined(AIB_WITH_PNG)
+  raster::label_image labels(4, 2);
+  std::iota(labels.begin(), labels.end(), std::uint16_t{0});
+  files.mask = files.labels = scratch.folder() / "labels.png";
+  io::write_png<std::uint16_t>(files.labels, labels);
+  frame = io::read_depth_frame(files, {.rule = raster::nearest_rule::floor});
+  CHECK(frame.labels(1, 0) == 2);
+  CHECK(frame.mask(0, 0) == 0);
+  CHECK(frame.mask(1, 0) == 1);
+#endif
+  files.reference = scratch.folder() / "nothing.npy";
+  CHECK_THROWS_AS((void)io::read_depth_frame(files), io_error);
 }

@@ -5,7 +5,7 @@
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
-#include <aib/core/simd.hpp>
+#include <aib/core/simd_wide.hpp>
 #include <aib/math/log_ratio.hpp>
 #include <aib/raster/view.hpp>
 #include <aib/stats/moments.hpp>
@@ -107,20 +107,21 @@ namespace detail {
 
 inline namespace AIB_ISA {
 
-inline f64x4 load4(const double* p) { return f64x4::load(p); }
-inline f64x4 load4(const float* p) { return f64x4::convert(p); }
-inline f64x4 load4(const std::uint8_t* p) {
-  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
-  return f64x4::load(inside);
+inline f64x8 load8(const double* p) { return f64x8::load(p); }
+inline f64x8 load8(const float* p) { return f64x8::convert(p); }
+inline f64x8 load8(const std::uint8_t* p) {
+  double inside[8];
+  for (std::size_t i = 0; i < 8; ++i) inside[i] = p[i] ? 1.0 : 0.0;
+  return f64x8::load(inside);
 }
 
-/// Four from `p`, of which `n` are there: the others are 0.
+/// Eight from `p`, of which `n` are there: the others are 0.
 template <class T>
-f64x4 load4(const T* p, std::size_t n) {
-  if (n >= 4) return load4(p);
-  T some[4] = {};
+f64x8 load8(const T* p, std::size_t n) {
+  if (n >= 8) return load8(p);
+  T some[8] = {};
   std::copy_n(p, n, some);
-  return load4(some);
+  return load8(some);
 }
 
 }  // namespace AIB_ISA
@@ -132,7 +133,7 @@ inline namespace AIB_ISA {
 /// Which sums are wanted: those of the log ratio (and the counts) take half the time.
 enum class error_set { all, log_ratio };
 
-/// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
+/// Adds up rows of pixels, eight at a time in fixed lanes: every instruction set gives the same
 /// bits.
 template <error_set Set = error_set::all>
 class error_adder {
@@ -153,39 +154,39 @@ class error_adder {
   /// Pixels whose log ratios are kept until their mean is known.
   struct block {
     static constexpr std::size_t size = 512;
-    f64x4 log_ratio[size / 4];
-    f64x4 weight[size / 4];
+    f64x8 log_ratio[size / 8];
+    f64x8 weight[size / 8];
   };
   /// A pixel that does not count is estimate = reference = 1: all its errors are 0.
   struct pixels {
-    f64x4 estimate;
-    f64x4 reference;
-    f64x4 weight;  ///< 1 where the pixel counts, else 0
+    f64x8 estimate;
+    f64x8 reference;
+    f64x8 weight;  ///< 1 where the pixel counts, else 0
   };
 
-  f64x4 transformed(f64x4 raw) const;
-  pixels select(f64x4 estimate, f64x4 reference, const std::uint8_t* mask, std::size_t n);
-  f64x4 add(const pixels& p);
-  void add_errors(const pixels& p, f64x4 log_ratio);
+  f64x8 transformed(f64x8 raw) const;
+  pixels select(f64x8 estimate, f64x8 reference, const std::uint8_t* mask, std::size_t n);
+  f64x8 add(const pixels& p);
+  void add_errors(const pixels& p, f64x8 log_ratio);
   void add_log_ratios(const block& b, std::size_t n);
 
-  static f64x4 number(double x) { return f64x4::broadcast(x); }
-  static f64x4 is_less(f64x4 a, f64x4 b) { return choose(a, b, number(1), number(0)); }
-  static f64x4 absolute(f64x4 a) { return max(a, number(0) - a); }
+  static f64x8 number(double x) { return f64x8::broadcast(x); }
+  static f64x8 is_less(f64x8 a, f64x8 b) { return choose(a, b, number(1), number(0)); }
+  static f64x8 absolute(f64x8 a) { return max(a, number(0) - a); }
 
   pixel_rules rules_;
   bool changes_estimate_;  ///< by transform or clamp
   stats::moments log_ratio_;
-  f64x4 n_reference_ = number(0);
-  f64x4 n_estimate_ = number(0);
-  f64x4 abs_log_ = number(0);
-  f64x4 abs_difference_ = number(0);
-  f64x4 squared_difference_ = number(0);
-  f64x4 abs_relative_ = number(0);
-  f64x4 squared_relative_ = number(0);
-  f64x4 abs_inverse_ = number(0);
-  f64x4 squared_inverse_ = number(0);
-  f64x4 below_delta_[3] = {number(0), number(0), number(0)};
+  f64x8 n_reference_ = number(0);
+  f64x8 n_estimate_ = number(0);
+  f64x8 abs_log_ = number(0);
+  f64x8 abs_difference_ = number(0);
+  f64x8 squared_difference_ = number(0);
+  f64x8 abs_relative_ = number(0);
+  f64x8 squared_relative_ = number(0);
+  f64x8 abs_inverse_ = number(0);
+  f64x8 squared_inverse_ = number(0);
+  f64x8 below_delta_[3] = {number(0), number(0), number(0)};
 };
 
 template <error_set Set>
@@ -196,47 +197,47 @@ void error_adder<Set>::add(std::span<const Estimate> estimate,
   block b;
   for (std::size_t first = 0; first < estimate.size(); first += block::size) {
     const std::size_t n = std::min(block::size, estimate.size() - first);
-    for (std::size_t i = 0; i < n; i += 4) {
+    for (std::size_t i = 0; i < n; i += 8) {
       const std::size_t at = first + i;
       const pixels p =
-          select(detail::load4(estimate.data() + at, n - i),
-                 detail::load4(reference.data() + at, n - i), mask ? mask + at : nullptr, n - i);
-      b.log_ratio[i / 4] = add(p);
-      b.weight[i / 4] = p.weight;
+          select(detail::load8(estimate.data() + at, n - i),
+                 detail::load8(reference.data() + at, n - i), mask ? mask + at : nullptr, n - i);
+      b.log_ratio[i / 8] = add(p);
+      b.weight[i / 8] = p.weight;
     }
     add_log_ratios(b, n);
   }
 }
 
 template <error_set Set>
-f64x4 error_adder<Set>::transformed(f64x4 raw) const {
-  const f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
+f64x8 error_adder<Set>::transformed(f64x8 raw) const {
+  const f64x8 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
   return min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
 }
 
 /// Applies the rules.
 template <error_set Set>
-typename error_adder<Set>::pixels error_adder<Set>::select(f64x4 raw,
-                                                           f64x4 reference,
+typename error_adder<Set>::pixels error_adder<Set>::select(f64x8 raw,
+                                                           f64x8 reference,
                                                            const std::uint8_t* mask,
                                                            std::size_t n) {
-  const f64x4 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
-  f64x4 e = raw;
-  f64x4 has_estimate = is_less(zero, raw) * is_less(raw, inf);
-  f64x4 has_reference =
+  const f64x8 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
+  f64x8 e = raw;
+  f64x8 has_estimate = is_less(zero, raw) * is_less(raw, inf);
+  f64x8 has_reference =
       is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
   if (changes_estimate_) {
     e = transformed(raw);
     has_estimate = has_estimate * is_less(zero, e) * is_less(e, inf);
   }
   if (mask) {
-    const f64x4 inside = detail::load4(mask, n);
+    const f64x8 inside = detail::load8(mask, n);
     has_estimate = has_estimate * inside;
     has_reference = has_reference * inside;
   }
   n_estimate_ = n_estimate_ + has_estimate;
   n_reference_ = n_reference_ + has_reference;
-  const f64x4 weight = has_estimate * has_reference;
+  const f64x8 weight = has_estimate * has_reference;
   return {.estimate = choose(zero, weight, e, number(1)),
           .reference = choose(zero, weight, reference, number(1)),
           .weight = weight};
@@ -244,20 +245,20 @@ typename error_adder<Set>::pixels error_adder<Set>::select(f64x4 raw,
 
 /// Adds all but the moments of the log ratios, and returns those.
 template <error_set Set>
-f64x4 error_adder<Set>::add(const pixels& p) {
-  const f64x4 e = changes_estimate_ ? max(p.estimate, number(rules_.clamp_log)) : p.estimate;
-  const f64x4 log_ratio = p.weight * math::log_ratio(p.reference, e);
+f64x8 error_adder<Set>::add(const pixels& p) {
+  const f64x8 e = changes_estimate_ ? max(p.estimate, number(rules_.clamp_log)) : p.estimate;
+  const f64x8 log_ratio = p.weight * math::log_ratio(p.reference, e);
   if constexpr (Set == error_set::all) add_errors(p, log_ratio);
   return log_ratio;
 }
 
 template <error_set Set>
-void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
-  const f64x4 e = p.estimate, r = p.reference;
-  const f64x4 per_reference = number(1) / r;
-  const f64x4 difference = absolute(e - r);
-  const f64x4 relative = difference * per_reference;
-  const f64x4 inverse = absolute(number(1) / e - per_reference);
+void error_adder<Set>::add_errors(const pixels& p, f64x8 log_ratio) {
+  const f64x8 e = p.estimate, r = p.reference;
+  const f64x8 per_reference = number(1) / r;
+  const f64x8 difference = absolute(e - r);
+  const f64x8 relative = difference * per_reference;
+  const f64x8 inverse = absolute(number(1) / e - per_reference);
   abs_log_ = abs_log_ + absolute(log_ratio);
   abs_difference_ = abs_difference_ + difference;
   squared_difference_ = squared_difference_ + difference * difference;
@@ -266,7 +267,7 @@ void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
   abs_inverse_ = abs_inverse_ + inverse;
   squared_inverse_ = squared_inverse_ + inverse * inverse;
   // Without division: 1.25^k is exact in binary, and so is its product with a float.
-  const f64x4 larger = max(e, r), smaller = min(e, r);
+  const f64x8 larger = max(e, r), smaller = min(e, r);
   const auto below = [&](double delta) {
     return p.weight * is_less(larger, number(delta) * smaller);
   };
@@ -277,15 +278,15 @@ void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
 
 template <error_set Set>
 void error_adder<Set>::add_log_ratios(const block& b, std::size_t n) {
-  f64x4 counts = number(0), total = number(0), squares = number(0);
-  for (std::size_t i = 0; 4 * i < n; ++i) {
+  f64x8 counts = number(0), total = number(0), squares = number(0);
+  for (std::size_t i = 0; 8 * i < n; ++i) {
     counts = counts + b.weight[i];
     total = total + b.log_ratio[i];
   }
   const double count = sum(counts);
   const double mean = count > 0 ? sum(total) / count : 0;
-  for (std::size_t i = 0; 4 * i < n; ++i) {
-    const f64x4 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
+  for (std::size_t i = 0; 8 * i < n; ++i) {
+    const f64x8 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
     squares = squares + deviation * deviation;
   }
   log_ratio_ += stats::moments::from(static_cast<std::uint64_t>(count), mean, sum(squares));
@@ -293,7 +294,7 @@ void error_adder<Set>::add_log_ratios(const block& b, std::size_t n) {
 
 template <error_set Set>
 error_sums error_adder<Set>::result() const {
-  const auto count = [](f64x4 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
+  const auto count = [](f64x8 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
   return {.log_ratio = log_ratio_,
           .n_reference = count(n_reference_),
           .n_estimate = count(n_estimate_),
