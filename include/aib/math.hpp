@@ -5,6 +5,7 @@
 /// @file
 /// Rotations, transforms, cameras.
 
+#include <aib/math/angle_of.hpp>
 #include <aib/math/camera.hpp>
 #include <aib/math/log_ratio.hpp>
 #include <aib/math/nearest_rotation.hpp>

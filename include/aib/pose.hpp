@@ -18,6 +18,7 @@
 #include <aib/pose/intrinsics.hpp>
 #include <aib/pose/joint_counts.hpp>
 #include <aib/pose/kitti_odometry.hpp>
+#include <aib/pose/pair_histogram.hpp>
 #include <aib/pose/pose_relation.hpp>
 #include <aib/pose/registered.hpp>
 #include <aib/pose/registration.hpp>

@@ -19,9 +19,22 @@ function M.largest(models)
   for _, model in ipairs(models) do
     local more = not best or #model.trajectory > #best.trajectory
     local equal = best and #model.trajectory == #best.trajectory
-    if more or equal and #model.points > #best.points then best = model end
+    if more or equal and #(model.points or {}) > #(best.points or {}) then best = model end
   end
   return best
+end
+
+--- How many frames of a truth the models register: { largest =, each =, merged = }, each as
+--- aib.pose.registration_rate tells it. `models` have a `trajectory` each; `options` are rules of names.
+function M.registration(models, truth, options)
+  local largest, each, all = M.largest(models), {}, {}
+  local of_largest
+  for i, model in ipairs(models) do
+    all[i] = model.trajectory
+    each[i] = aib.pose.registration_rate(model.trajectory, truth, options)
+    if model == largest then of_largest = each[i] end
+  end
+  return { largest = of_largest, each = each, merged = aib.pose.registration_rate(all, truth, options) }
 end
 
 return M

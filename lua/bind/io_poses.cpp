@@ -115,6 +115,32 @@ void bind_trajectories(lua_State* state) {
                 });
 }
 
+#ifdef AIB_WITH_JSON
+std::vector<io::posed_images> opensfm_components(const fs::path& path) {
+  return io::read_opensfm_components(io::detail::file_in(path, "reconstruction.json"));
+}
+#else
+std::vector<io::posed_images> opensfm_components(const fs::path& path) {
+  io::detail::needs_library(path, "JSON", "nlohmann-json");
+}
+#endif
+
+void bind_opensfm(lua_State* state) {
+  module(state, "io")
+      .function("read_opensfm_components", {"path"}, [](lua_State* l, const fs::path& path) {
+        std::vector<record> components;
+        for (io::posed_images& images : opensfm_components(path)) {
+          camera_map cameras;
+          for (std::size_t i = 0; i < images.cameras.size(); ++i)
+            cameras.insert_or_assign(images.trajectory.names[i], images.cameras[i]);
+          record r(l);
+          r.set("cameras", cameras).set("trajectory", std::move(images.trajectory));
+          components.push_back(std::move(r));
+        }
+        return components;
+      });
+}
+
 void bind_colmap(lua_State* state) {
   module(state, "io")
       .function(
@@ -133,6 +159,7 @@ void bind_colmap(lua_State* state) {
 void bind_io_poses(lua_State* state) {
   bind_trajectories(state);
   bind_colmap(state);
+  bind_opensfm(state);
 }
 
 }  // namespace aib::bind

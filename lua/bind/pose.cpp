@@ -7,6 +7,7 @@
 #include <aib/pose/focal.hpp>
 #include <aib/pose/intrinsics.hpp>
 #include <aib/pose/kitti_odometry.hpp>
+#include <aib/pose/pair_histogram.hpp>
 #include <aib/pose/registration.hpp>
 #include <aib/pose/relative_angles.hpp>
 #include <aib/pose/rpe.hpp>
@@ -327,6 +328,14 @@ void bind_errors(module& m) {
           });
 }
 
+record as_record(lua_State* state, const pose::pair_histogram_result& h) {
+  record r(state);
+  r.set("rotation", h.rotation_deg).set("translation", h.translation_deg);
+  r.set("counts", h.counts).set("without_direction", h.without_direction);
+  r.set("n_pairs", h.n_pairs).set("n_zero_baseline", h.n_zero_baseline);
+  return r.set("n_unregistered", h.n_unregistered);
+}
+
 void bind_breakdown(module& m) {
   m.function("auc_by_batch", {"est", "ref", "batch", "options"},
              [](lua_State* l, session& s, const trajectory& est, const trajectory& ref,
@@ -348,6 +357,17 @@ void bind_breakdown(module& m) {
             for (const auto& r : pose::auc_by_gap(est, ref, gap_ranges(gaps), a))
               out.push_back(as_record(l, r.part).set("first", r.gap.first).set("last", r.gap.last));
             return out;
+          })
+      .function(
+          "pair_histogram", {"est", "ref", "options"},
+          [](lua_State* l, session& s, const trajectory& est, const trajectory& ref, options& o) {
+            pose::pair_histogram_options h;
+            h.rotation_deg = o.numbers("rotation", h.rotation_deg);
+            h.translation_deg = o.numbers("translation", h.translation_deg);
+            h.threads = s.threads;
+            h.control = s.control;
+            o.done();
+            return as_record(l, pose::pair_histogram(est, ref, h));
           })
       .function(
           "worst_pairs", {"est", "ref", "options"},

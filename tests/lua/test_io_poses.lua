@@ -27,6 +27,17 @@ return aib.test {
     t:equal(trajectory:positions()[2][3], 6.0)
   end,
 
+  ["every component of an OpenSfM reconstruction can be read"] = function(t)
+    local component <const> = [[{"cameras": {"c": {"projection_type": "none"}},
+      "shots": {"%s": {"camera": "c", "rotation": [0, 0, 0], "translation": [1, 2, 3]}}}]]
+    local path <close> = folder_with {
+      ["reconstruction.json"] = ("[" .. component .. "," .. component .. "]"):format("a.jpg", "b.jpg"),
+    }
+    local components = aib.io.read_opensfm_components(path "reconstruction.json")
+    t:equal({ #components, components[2].trajectory.names }, { 2, { "b.jpg" } })
+    t:equal(components[1].trajectory:positions()[1], { -1.0, -2.0, -3.0 })
+  end,
+
   ["convention and axes turn the poses"] = function(t)
     local path <close> = folder_with { ["poses.txt"] = kitti }
     local inverse = aib.io.read_trajectory(path "poses.txt", { convention = "camera_from_world" })

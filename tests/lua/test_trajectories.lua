@@ -61,6 +61,22 @@ return aib.test {
     t:equal({ r.rate, r.missing }, { 0.5, { "002.png", "004.png" } })
   end,
 
+  ["sub-models: the largest, each, and all together"] = function(t)
+    local submodels = require "aib.submodels"
+    local truth = ring(6)
+    local models = { { trajectory = truth:select { 1, 2 } }, { trajectory = truth:select { 2, 3, 4 } } }
+    local r = submodels.registration(models, truth)
+    t:equal({ r.largest.rate, r.each[1].n_registered, r.merged.n_registered }, { 0.5, 2, 4 })
+    t:equal(r.merged.missing, { "005.png", "006.png" })
+  end,
+
+  ["the joint histogram holds every pair"] = function(t)
+    local ref = ring(10)
+    local h = aib.pose.pair_histogram(ref, ref, { rotation = { 5, 10 }, translation = { 1 } })
+    t:equal(h.counts, { { 45, 0 }, { 0, 0 }, { 0, 0 } })
+    t:equal({ h.n_pairs, h.without_direction }, { 45, { 0, 0, 0 } })
+  end,
+
   ["batches are fitted one by one"] = function(t)
     local ref = ring(30)
     local batches, moved = aib.align.batches(ring(30, shifted), ref, { size = 10, mode = "se3" })

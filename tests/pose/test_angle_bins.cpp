@@ -7,6 +7,10 @@
 #include <doctest/doctest.h>
 
 #include "synthetic.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
 
 using namespace aib;
 
@@ -84,6 +88,30 @@ TEST_CASE("counts do not depend on the number of threads") {
       pairs_of(synthetic::noisy(reference, {.rotation_deg = 10, .position = 0.3}), reference);
   const pose::angle_bins bins({1, 5, 10, 20, 30});
   CHECK(equal(pairs.count(bins, bins, 1), pairs.count(bins, bins, 3)));
+}
+
+TEST_CASE("many errors at once are those of each pair") {
+  pose::trajectory reference = synthetic::orbit({.frames = 100, .turns = 2});
+  reference.world_from_camera[70].translation = reference.world_from_camera[71].translation;
+  for (const double noise : {0.0, 1e-7, 10.0, 90.0}) {
+    const pose::trajectory estimate =
+        synthetic::noisy(reference, {.rotation_deg = noise, .position = noise});
+    const pose::frame_pairs pairs = pairs_of(estimate, reference);
+    double worst = 0;
+    std::size_t visited = 0;
+    for (std::size_t i = 0; i < 100; ++i) {
+      pairs.for_each_error(i, {3, 99}, [&](std::size_t j, double rotation, double translation) {
+        if (j == i) return;
+        ++visited;
+        const pose::pair_error e = pairs.error(i, j);
+        worst = std::max(worst, std::abs(rotation - e.rotation_deg));
+        CHECK(std::isnan(translation) == !e.translation_deg);
+        if (e.translation_deg) worst = std::max(worst, std::abs(translation - *e.translation_deg));
+      });
+    }
+    CHECK(visited == 100 * 96 - 96);
+    CHECK(worst < 1e-12);
+  }
 }
 
 TEST_CASE("baselines of a billionth of the longest have no direction") {

@@ -103,16 +103,14 @@ struct area_sums {
   }
 };
 
-/// Sums `visit(area_sums&, i, j)` over all pairs i < j of n frames.
-template <class Visit>
-area_sums sum_pairs(std::size_t n, const auc_options& options, Visit&& visit) {
+/// Sums of all pairs; `add_row(area_sums&, i)` adds those of frame i.
+template <class AddRow>
+area_sums sum_rows(std::size_t n, const auc_options& options, AddRow&& add_row) {
   return reduce_chunks<area_sums>(
-      n, 64, options.threads, options.control, area_sums(options.max_deg),
+      n, 16, options.threads, options.control, area_sums(options.max_deg),
       [&](const chunk& c) {
         area_sums sums(options.max_deg);
-        for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < n; ++j) visit(sums, i, j);
-        }
+        for (std::size_t i = c.begin; i < c.end; ++i) add_row(sums, i);
         return sums;
       },
       [](area_sums a, const area_sums& b) { return std::move(a) + b; });
@@ -148,10 +146,12 @@ inline auc_result exact_auc(const registered_frames& frames,
                             const auc_options& options) {
   const frame_pairs pairs(frames.estimate, frames.reference);
   const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error e = pairs.error(i, j);
-    s.n_zero_baseline += e.translation_deg ? 0 : 1;
-    s.add(e.rotation_deg, e.translation_deg.value_or(360));
+  const area_sums sums = sum_rows(n, options, [&](area_sums& s, std::size_t i) {
+    pairs.for_each_error(i, {i + 1, n}, [&](std::size_t, double rotation, double translation) {
+      const bool has_direction = !std::isnan(translation);
+      s.n_zero_baseline += has_direction ? 0 : 1;
+      s.add(rotation, has_direction ? translation : 360);
+    });
   });
   const std::uint64_t n_pairs = n * (n - 1) / 2;
   if (sums.n_zero_baseline == n_pairs) {
@@ -171,26 +171,26 @@ inline auc_result colmap_auc(const trajectory& estimate,
   for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
   const association matched =
       associate(estimate, reference, {.by = named ? match_by::name : match_by::index});
-  registered_frames frames = registered("auc", matched.estimate, matched.reference);
+  const registered_frames frames = registered("auc", matched.estimate, matched.reference);
   if (total < 2) throw undefined_error(message("auc: 2 reference frames expected, found ", total));
   const frame_pairs pairs(frames.estimate, frames.reference);
-  std::reverse(frames.estimate.begin(), frames.estimate.end());
-  std::reverse(frames.reference.begin(), frames.reference.end());
-  const frame_pairs swapped(frames.estimate, frames.reference);
   const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error one = pairs.error(i, j), other = swapped.error(n - 1 - j, n - 1 - i);
-    const math::rigid3 &gi = frames.reference[n - 1 - i], &gj = frames.reference[n - 1 - j];
-    const double baseline = (gj.translation - gi.translation).norm();
-    const bool short_reference =
-        baseline < options.position_accuracy || !pairs.reference_baselines().has_direction(i, j);
-    const double without = short_reference ? 0 : 90;
-    const auto translation = [&](const pair_error& e) {
-      return short_reference ? 0 : e.translation_deg.value_or(without);
+  const auto has_short_reference = [&](std::size_t i, std::size_t j) {
+    const auto &gi = frames.reference[i].translation, &gj = frames.reference[j].translation;
+    return (gj - gi).norm() < options.position_accuracy ||
+           !pairs.reference_baselines().has_direction(i, j);
+  };
+  const area_sums sums = sum_rows(n, options, [&](area_sums& s, std::size_t i) {
+    const auto add = [&](std::size_t j, double rotation, double translation) {
+      const bool has_direction = !std::isnan(translation);
+      s.n_zero_baseline += has_direction ? 0 : 1;
+      if (has_short_reference(i, j))
+        s.add(rotation, 0);
+      else
+        s.add(rotation, has_direction ? translation : 90);
     };
-    s.n_zero_baseline += one.translation_deg ? 0 : 2;
-    s.add(one.rotation_deg, translation(one));
-    s.add(other.rotation_deg, translation(other));
+    pairs.for_each_error(i, {0, i}, add);
+    pairs.for_each_error(i, {i + 1, n}, add);
   });
   return result_of(sums, sums.below + sums.last / 2,
                    static_cast<std::uint64_t>(total) * (total - 1), total - n, options);

@@ -4,6 +4,8 @@
 
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
+#include <aib/core/simd.hpp>
+#include <aib/math/angle_of.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/math/rotation.hpp>
 #include <aib/pose/angle_bins.hpp>
@@ -68,6 +70,14 @@ class frame_pairs {
   /// Exact errors of one pair.
   [[nodiscard]] pair_error error(std::size_t i, std::size_t j) const;
 
+  /// Calls `visit` with the errors of frame i and those of a row, ascending: the numbers of `error`
+  /// up to rounding, many at once.
+  ///
+  /// visit   void(std::size_t j, double rotation_deg, double translation_deg), the latter NaN where
+  ///         there is no direction
+  template <class Visit>
+  void for_each_error(std::size_t i, pair_row row, Visit&& visit) const;
+
   /// Counts the pairs of every frame i with the frames of `row(i)` by their errors.
   ///
   /// row   pair_row(std::size_t i), within [0, frames())
@@ -99,6 +109,11 @@ class frame_pairs {
     double rotation[block], direction[block];
     std::uint64_t rotation_cell[block], direction_cell[block];
   };
+  /// Squared sines and cosines of errors, of rotations of half the angle, both times a length.
+  struct block_errors {
+    double rotation_sine2[block], rotation_cosine[block], sine2[block], cosine[block];
+    bool has_direction[block];
+  };
   /// Where a pair counts, by the cells of its keys. Cells of directions: those of front, those of
   /// back, no_direction.
   struct place_tables {
@@ -109,6 +124,7 @@ class frame_pairs {
   static constexpr std::uint64_t no_direction = 2 * key_table::size();
 
   [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
+  [[nodiscard]] block_errors errors_of(std::size_t i, std::size_t j) const;
   /// Where the pair of i and j + k counts whose keys lie in the cell of an edge.
   [[nodiscard]] std::size_t place(std::size_t i,
                                   std::size_t j,
@@ -246,6 +262,64 @@ inline void frame_pairs::count_block(std::size_t i,
     if (at >= key_table::edge) [[unlikely]]
       at = place(i, j, k, keys, tables, bins);
     ++count[at];
+  }
+}
+
+/// Not from 1 - cos^2: cross products and the vector of the quaternion keep small angles.
+inline frame_pairs::block_errors frame_pairs::errors_of(std::size_t i, std::size_t j) const {
+  block_errors out;
+  const double w = residual_[0][i], x = residual_[1][i], y = residual_[2][i], z = residual_[3][i];
+  const double *ws = &residual_[0][j], *xs = &residual_[1][j], *ys = &residual_[2][j],
+               *zs = &residual_[3][j];
+  for (std::size_t k = 0; k < block; ++k) {
+    const double vx = w * xs[k] - x * ws[k] - (y * zs[k] - z * ys[k]);
+    const double vy = w * ys[k] - y * ws[k] - (z * xs[k] - x * zs[k]);
+    const double vz = w * zs[k] - z * ws[k] - (x * ys[k] - y * xs[k]);
+    out.rotation_sine2[k] = vx * vx + vy * vy + vz * vz;
+    out.rotation_cosine[k] = std::abs(w * ws[k] + x * xs[k] + y * ys[k] + z * zs[k]);
+  }
+  const Eigen::Matrix3d& m = reference_from_estimate_[i];
+  const double g_certain = reference_.certain() * reference_.certain();
+  const double p_certain = estimate_.certain() * estimate_.certain();
+  for (std::size_t k = 0; k < block; ++k) {
+    const double g0 = reference_.x[j + k] - reference_.x[i];
+    const double g1 = reference_.y[j + k] - reference_.y[i];
+    const double g2 = reference_.z[j + k] - reference_.z[i];
+    const double p0 = estimate_.x[j + k] - estimate_.x[i];
+    const double p1 = estimate_.y[j + k] - estimate_.y[i];
+    const double p2 = estimate_.z[j + k] - estimate_.z[i];
+    const double u0 = m(0, 0) * p0 + m(0, 1) * p1 + m(0, 2) * p2;
+    const double u1 = m(1, 0) * p0 + m(1, 1) * p1 + m(1, 2) * p2;
+    const double u2 = m(2, 0) * p0 + m(2, 1) * p1 + m(2, 2) * p2;
+    const double c0 = g1 * u2 - g2 * u1, c1 = g2 * u0 - g0 * u2, c2 = g0 * u1 - g1 * u0;
+    out.sine2[k] = c0 * c0 + c1 * c1 + c2 * c2;
+    out.cosine[k] = g0 * u0 + g1 * u1 + g2 * u2;
+    out.has_direction[k] =
+        (g0 * g0 + g1 * g1 + g2 * g2 > g_certain) & (p0 * p0 + p1 * p1 + p2 * p2 > p_certain);
+  }
+  return out;
+}
+
+template <class Visit>
+void frame_pairs::for_each_error(std::size_t i, pair_row row, Visit&& visit) const {
+  double rotation[block], translation[block];
+  for (std::size_t j = row.begin; j < row.end; j += block) {
+    const block_errors errors = errors_of(i, j);
+    for (std::size_t k = 0; k < block; k += f64x4::width) {
+      const auto angle = [&](const double* cosine, const double* sine2) {
+        return math::angle_of(f64x4::load(cosine + k), sqrt(f64x4::load(sine2 + k)));
+      };
+      angle(errors.rotation_cosine, errors.rotation_sine2).store(rotation + k);
+      angle(errors.cosine, errors.sine2).store(translation + k);
+    }
+    for (std::size_t k = 0; k < std::min(block, row.end - j); ++k) {
+      double translation_deg = math::degrees(translation[k]);
+      if (!errors.has_direction[k]) {
+        translation_deg =
+            error(i, j + k).translation_deg.value_or(std::numeric_limits<double>::quiet_NaN());
+      }
+      visit(j + k, math::degrees(2 * rotation[k]), translation_deg);
+    }
   }
 }
 

@@ -54,13 +54,18 @@ class joint_counts {
     return *this;
   }
 
+  /// Pairs in one rotation bin and one column.
+  [[nodiscard]] std::uint64_t at(std::size_t rotation, std::size_t column) const {
+    return counts_[rotation * columns() + column];
+  }
+
   /// Pairs in rotation bins [0, rotation_end) and columns [column, column_end).
   [[nodiscard]] std::uint64_t sum(std::size_t rotation_end,
                                   std::size_t column,
                                   std::size_t column_end) const {
     std::uint64_t n = 0;
     for (std::size_t r = 0; r < rotation_end; ++r) {
-      for (std::size_t c = column; c < column_end; ++c) n += counts_[r * columns() + c];
+      for (std::size_t c = column; c < column_end; ++c) n += at(r, c);
     }
     return n;
   }

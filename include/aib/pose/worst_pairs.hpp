@@ -39,7 +39,6 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
   struct found {
     double error;
     std::size_t i, j;
-    pair_error angles;
     bool operator<(const found& o) const {
       if (error != o.error) return error > o.error;
       return i != o.i ? i < o.i : j < o.j;
@@ -54,26 +53,32 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
       pairs.frames(), 64, options.threads, options.control, std::vector<found>(),
       [&](const chunk& c) {
         std::vector<found> list;
+        double least = -1;  // of the worst so far, once there are enough
         for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < pairs.frames(); ++j) {
-            const pair_error e = pairs.error(i, j);
-            list.push_back({std::max(e.rotation_deg, e.translation_deg.value_or(0)), i, j, e});
-            if (list.size() >= 2 * options.n + 1000) keep_worst(list);
-          }
-          keep_worst(list);
+          const auto add = [&](std::size_t j, double rotation, double translation) {
+            const double error = translation > rotation ? translation : rotation;  // NaN: rotation
+            if (!(error > least)) return;
+            list.push_back({error, i, j});
+            if (list.size() < 2 * options.n + 100) return;
+            keep_worst(list);
+            least = list.empty() ? least : list.back().error;
+          };
+          pairs.for_each_error(i, {i + 1, pairs.frames()}, add);
         }
+        keep_worst(list);
         return list;
       },
-      [&](std::vector<found> a, std::vector<found> b) {
+      [&](std::vector<found> a, const std::vector<found>& b) {
         a.insert(a.end(), b.begin(), b.end());
         keep_worst(a);
         return a;
       });
   std::vector<worst_pair> out;
   for (const found& f : worst) {
+    const pair_error e = pairs.error(f.i, f.j);
     out.push_back({frame_name(estimate, reference, frames.index[f.i]),
-                   frame_name(estimate, reference, frames.index[f.j]), f.angles.rotation_deg,
-                   f.angles.translation_deg});
+                   frame_name(estimate, reference, frames.index[f.j]), e.rotation_deg,
+                   e.translation_deg});
   }
   return out;
 }

@@ -80,6 +80,11 @@ function io.read_colmap(path) end
 ---@return aib.io.ColmapModel[]
 function io.read_colmap_models(path) end
 
+---The components of an OpenSfM or OpenDroneMap reconstruction, in the order of the file.
+---@param path string  # reconstruction.json or its folder
+---@return { trajectory: aib.Trajectory, cameras: table<string, aib.Camera> }[]
+function io.read_opensfm_components(path) end
+
 ---Writes poses. Without a format: .txt and .tum are tum, .kitti kitti, .json transforms, .npy npy
 ---(N x 4 x 4); a path without an extension is the folder of a COLMAP model, which needs cameras.
 ---Poses that are not registered are left out; KITTI and NPY cannot do that and say so.

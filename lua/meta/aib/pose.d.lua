@@ -121,6 +121,24 @@ function pose.auc(est, ref, options) end
 ---@return { rra: table<number, number>, rta: table<number, number>, n_pairs: integer, n_zero_baseline: integer, n_unregistered: integer } angles
 function pose.relative_angles(est, ref, options) end
 
+---Frame pairs by rotation error (rows) and signed direction error (columns). Bin k holds
+---edge[k - 1] <= error < edge[k]; the last has no end. Every RRA, RTA and AUC of these edges is a sum of it.
+---@class aib.PairHistogram
+---@field rotation number[]  # edges, degrees
+---@field translation number[]  # edges, degrees
+---@field counts integer[][]  # one row a rotation bin
+---@field without_direction integer[]  # pairs of each rotation bin that have none
+---@field n_pairs integer
+---@field n_zero_baseline integer
+---@field n_unregistered integer
+
+---The joint histogram of the relative errors of all frame pairs, in one pass.
+---@param est aib.Trajectory
+---@param ref aib.Trajectory
+---@param options? { rotation?: number[], translation?: number[] }  # edges, degrees
+---@return aib.PairHistogram histogram
+function pose.pair_histogram(est, ref, options) end
+
 ---@class aib.PartialAuc
 ---@field n_pairs integer
 ---@field n_zero_baseline integer
