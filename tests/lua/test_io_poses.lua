@@ -28,7 +28,7 @@ return aib.test {
   end,
 
   ["every component of an OpenSfM reconstruction can be read"] = function(t)
-    local component <const> = [[{"cameras": {"c": {"projection_type": "none"}},
+    local component <const> = [[{"cameras": {"c": {"projection_type": "perspective", "width": 64, "height": 48, "focal": 1}},
       "shots": {"%s": {"camera": "c", "rotation": [0, 0, 0], "translation": [1, 2, 3]}}}]]
     local path <close> = folder_with {
       ["reconstruction.json"] = ("[" .. component .. "," .. component .. "]"):format("a.jpg", "b.jpg"),
@@ -36,6 +36,7 @@ return aib.test {
     local components = aib.io.read_opensfm_components(path "reconstruction.json")
     t:equal({ #components, components[2].trajectory.names }, { 2, { "b.jpg" } })
     t:equal(components[1].trajectory:positions()[1], { -1.0, -2.0, -3.0 })
+    t:equal(components[1].cameras["a.jpg"].fx, 64.0)
   end,
 
   ["convention and axes turn the poses"] = function(t)
