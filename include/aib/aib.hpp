@@ -17,3 +17,4 @@
 #include <aib/sample.hpp>
 #include <aib/search.hpp>
 #include <aib/stats.hpp>
+#include <aib/stream.hpp>

@@ -44,6 +44,7 @@
 #include <aib/io/ply.hpp>
 #include <aib/io/ply_data.hpp>
 #include <aib/io/ply_header.hpp>
+#include <aib/io/ply_positions.hpp>
 #include <aib/io/ply_write.hpp>
 #include <aib/io/pose_arrays.hpp>
 #include <aib/io/pose_format.hpp>

@@ -3401,6 +3401,60 @@ inline void check_maximum(const distance_options& options) {
   }
 }
 
+inline void check_tau(double tau, const distance_options& options) {
+  if (!options.max_distance || tau <= *options.max_distance) return;
+  throw argument_error(
+      message("cloud::distances: tau ", tau, " is above max_distance ", *options.max_distance));
+}
+
+/// Whether distances beyond the maximum are left out.
+inline bool drops(const distance_options& options) {
+  return options.max_distance && options.rule == maximum_rule::drop;
+}
+
+/// Makes of distances not below the maximum what the rule says; returns how many there are.
+inline std::size_t cut_at_maximum(std::span<float> values, const distance_options& options) {
+  if (!options.max_distance) return 0;
+  const float beyond = drops(options) ? std::numeric_limits<float>::infinity()
+                                      : static_cast<float>(*options.max_distance);
+  std::size_t n = 0;
+  for (float& value : values) {
+    if (static_cast<double>(value) >= *options.max_distance) {
+      value = beyond;
+      ++n;
+    }
+  }
+  return n;
+}
+
+/// Sums over a chunk of distances; those of chunks are added in order.
+struct distance_sums {
+  std::size_t dropped = 0;
+  double sum = 0, squares = 0, max = 0;
+
+  distance_sums& operator+=(const distance_sums& other) {
+    dropped += other.dropped;
+    sum += other.sum;
+    squares += other.squares;
+    max = std::max(max, other.max);
+    return *this;
+  }
+};
+
+inline distance_sums sums_of(std::span<const float> values, const distance_options& options) {
+  const bool skip_infinite = drops(options);
+  distance_sums s;
+  for (const float value : values) {
+    const double d = value;
+    if (std::isnan(d)) ++s.dropped;
+    if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
+    s.sum += d;
+    s.squares += d * d;
+    s.max = std::max(s.max, d);
+  }
+  return s;
+}
+
 /// A float not below the square of the largest distance that counts.
 inline float squared_bound(const distance_options& options) {
   if (!options.max_distance) return std::numeric_limits<float>::infinity();
@@ -3451,43 +3505,15 @@ inline distances::distances(std::vector<float> values, const distance_options& o
   summarize();
 }
 
-inline void distances::apply_maximum() {
-  if (!options_.max_distance) return;
-  const bool drop = options_.rule == maximum_rule::drop;
-  const float beyond =
-      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
-  for (float& value : values_) {
-    if (static_cast<double>(value) >= *options_.max_distance) {
-      value = beyond;
-      ++n_beyond_;
-    }
-  }
-}
+inline void distances::apply_maximum() { n_beyond_ = detail::cut_at_maximum(values_, options_); }
 
 inline void distances::summarize() {
-  struct sums {
-    std::size_t dropped = 0;
-    double sum = 0, squares = 0, max = 0;
-  };
-  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
   const auto sum_chunk = [&](const chunk& c) {
-    sums s;
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const double d = values_[i];
-      if (std::isnan(d)) ++s.dropped;
-      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
-      s.sum += d;
-      s.squares += d * d;
-      s.max = std::max(s.max, d);
-    }
-    return s;
+    return detail::sums_of(values().subspan(c.begin, c.end - c.begin), options_);
   };
-  const auto combine = [](sums a, const sums& b) {
-    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
-                std::max(a.max, b.max)};
-  };
-  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
-                                   sums{}, sum_chunk, combine);
+  const auto total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                                   detail::distance_sums{}, sum_chunk,
+                                   [](auto a, const auto& b) { return a += b; });
   n_dropped_ = total.dropped;
   sum_ = total.sum;
   sum_of_squares_ = total.squares;
@@ -3546,12 +3572,7 @@ inline stats::histogram distances::histogram(double high, std::size_t bins) cons
 
 inline std::vector<double> distances::shares_below(std::span<const double> tau) const {
   if (n_finite() == 0) demand_values("share");
-  for (const double t : tau) {
-    if (options_.max_distance && t > *options_.max_distance) {
-      throw argument_error(
-          message("cloud::distances: tau ", t, " is above max_distance ", *options_.max_distance));
-    }
-  }
+  for (const double t : tau) detail::check_tau(t, options_);
   std::vector<double> ascending(tau.begin(), tau.end());
   std::sort(ascending.begin(), ascending.end());
   const auto first_above = [&](double d) {
@@ -3630,6 +3651,19 @@ struct comparison {
   double reference_beyond;  ///< share of the reference not below max_distance
 };
 
+/// Distances of the points of a cloud, in memory or not, that know their statistics.
+template <class T>
+concept distance_statistics = requires(const T& d, std::span<const double> tau) {
+  { d.mean() } -> std::convertible_to<double>;
+  { d.median() } -> std::convertible_to<double>;
+  { d.rmse() } -> std::convertible_to<double>;
+  { d.max() } -> std::convertible_to<double>;
+  { d.n_finite() } -> std::convertible_to<std::size_t>;
+  { d.n_dropped() } -> std::convertible_to<std::size_t>;
+  { d.share_beyond() } -> std::convertible_to<double>;
+  { d.shares_below(tau) } -> std::convertible_to<std::vector<double>>;
+};
+
 namespace detail {
 
 inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
@@ -3665,9 +3699,10 @@ struct two_way_distances {
 }
 
 /// Precision, recall and F-score at thresholds, in their order: with many of them, a curve.
-[[nodiscard]] inline std::vector<threshold_scores> scores_at(const distances& to_reference,
-                                                             const distances& to_estimate,
-                                                             std::span<const double> tau) {
+template <distance_statistics Distances>
+[[nodiscard]] std::vector<threshold_scores> scores_at(const Distances& to_reference,
+                                                      const Distances& to_estimate,
+                                                      std::span<const double> tau) {
   const auto precision = to_reference.shares_below(tau);
   const auto recall = to_estimate.shares_below(tau);
   std::vector<threshold_scores> scores;
@@ -3679,9 +3714,10 @@ struct two_way_distances {
 }
 
 /// The scores of distances in both directions, wherever they come from.
-[[nodiscard]] inline comparison score(const distances& to_reference,
-                                      const distances& to_estimate,
-                                      std::span<const double> tau = {}) {
+template <distance_statistics Distances>
+[[nodiscard]] comparison score(const Distances& to_reference,
+                               const Distances& to_estimate,
+                               std::span<const double> tau = {}) {
   const double accuracy = to_reference.mean();
   const double completeness = to_estimate.mean();
   comparison c{.accuracy = accuracy,
@@ -4954,6 +4990,90 @@ namespace aib::cloud {
 
 }  // namespace aib::cloud
 
+// aib/core/simd_wide.hpp
+
+namespace aib {
+
+inline namespace AIB_ISA {
+
+#if !defined(AIB_PLAIN) && defined(__AVX512F__)
+
+/// Eight doubles that are calculated together, see simd.hpp.
+///
+/// The masked forms of what works on all lanes: g++ 12 warns of the others.
+struct f64x8 {
+  static constexpr std::size_t width = 8;
+  static constexpr __mmask8 all = 0xff;
+  __m512d v;
+
+  static f64x8 load(const double* p) { return {_mm512_loadu_pd(p)}; }
+  static f64x8 convert(const float* p) { return {_mm512_maskz_cvtps_pd(all, _mm256_loadu_ps(p))}; }
+  static f64x8 broadcast(double x) { return {_mm512_set1_pd(x)}; }
+  void store(double* p) const { _mm512_storeu_pd(p, v); }
+
+  friend f64x8 operator+(f64x8 a, f64x8 b) { return {_mm512_add_pd(a.v, b.v)}; }
+  friend f64x8 operator-(f64x8 a, f64x8 b) { return {_mm512_sub_pd(a.v, b.v)}; }
+  friend f64x8 operator*(f64x8 a, f64x8 b) { return {_mm512_mul_pd(a.v, b.v)}; }
+  friend f64x8 operator/(f64x8 a, f64x8 b) { return {_mm512_div_pd(a.v, b.v)}; }
+  friend f64x8 min(f64x8 a, f64x8 b) { return {_mm512_maskz_min_pd(all, a.v, b.v)}; }
+  friend f64x8 max(f64x8 a, f64x8 b) { return {_mm512_maskz_max_pd(all, a.v, b.v)}; }
+  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+    return {_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ), y.v, x.v)};
+  }
+  friend f64x8 mantissa(f64x8 a) {
+    const __m512i fraction =
+        _mm512_and_epi64(_mm512_castpd_si512(a.v), _mm512_set1_epi64(detail::fraction_bits));
+    return {_mm512_castsi512_pd(_mm512_or_epi64(fraction, _mm512_castpd_si512(_mm512_set1_pd(1))))};
+  }
+  friend f64x8 exponent(f64x8 a) {
+    const __m512i shifted = _mm512_maskz_srli_epi64(all, _mm512_castpd_si512(a.v), 52);
+    const __m512i offset = _mm512_castpd_si512(_mm512_set1_pd(0x1p52));
+    return {_mm512_sub_pd(_mm512_castsi512_pd(_mm512_or_epi64(shifted, offset)),
+                          _mm512_set1_pd(detail::exponent_offset))};
+  }
+};
+
+#else
+
+/// Eight doubles that are calculated together, see simd.hpp.
+struct f64x8 {
+  static constexpr std::size_t width = 8;
+  f64x4 lo, hi;
+
+  static f64x8 load(const double* p) { return {f64x4::load(p), f64x4::load(p + 4)}; }
+  static f64x8 convert(const float* p) { return {f64x4::convert(p), f64x4::convert(p + 4)}; }
+  static f64x8 broadcast(double x) { return {f64x4::broadcast(x), f64x4::broadcast(x)}; }
+  void store(double* p) const {
+    lo.store(p);
+    hi.store(p + 4);
+  }
+
+  friend f64x8 operator+(f64x8 a, f64x8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend f64x8 operator-(f64x8 a, f64x8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend f64x8 operator*(f64x8 a, f64x8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend f64x8 operator/(f64x8 a, f64x8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend f64x8 min(f64x8 a, f64x8 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend f64x8 max(f64x8 a, f64x8 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+    return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
+  }
+  friend f64x8 mantissa(f64x8 a) { return {mantissa(a.lo), mantissa(a.hi)}; }
+  friend f64x8 exponent(f64x8 a) { return {exponent(a.lo), exponent(a.hi)}; }
+};
+
+#endif
+
+/// Sum of the lanes in a fixed order.
+inline double sum(f64x8 a) {
+  double lane[8];
+  a.store(lane);
+  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
+
 // aib/depth/crop.hpp
 
 namespace aib::depth {
@@ -5026,26 +5146,29 @@ namespace aib::math {
 
 inline namespace AIB_ISA {
 
-/// ln(a / b) in four lanes, of positive, finite, normal doubles: within 3e-16 of the largest of 1
-/// and the result. The ratio never overflows; equal numbers give exactly 0, near ones of one binade
-/// keep their digits; the same bits on every machine.
+/// ln(a / b) in lanes (f64x4, f64x8), of positive, finite, normal doubles: within 3e-16 of the
+/// largest of 1 and the result. The ratio never overflows; equal numbers give exactly 0, near ones
+/// of one binade keep their digits; the same bits on every machine.
 ///
 /// ln(a / b) = 2 atanh((a - b) / (a + b)), taken on the mantissas, whose quotient s is at most 1/3;
 /// atanh(s) / s by a Chebyshev interpolation in s^2 on [0, 1/9], within 6e-18.
-inline f64x4 log_ratio(f64x4 a, f64x4 b) {
-  const f64x4 ma = mantissa(a), mb = mantissa(b);
-  const f64x4 s = (ma - mb) / (ma + mb);
-  const f64x4 z = s * s;
-  const auto term = [&](f64x4 higher, double coefficient) {
-    return higher * z + f64x4::broadcast(coefficient);
+template <class Lanes>
+Lanes log_ratio(Lanes a, Lanes b) {
+  const Lanes ma = mantissa(a), mb = mantissa(b);
+  const Lanes s = (ma - mb) / (ma + mb);
+  const Lanes z = s * s, z2 = z * z, z4 = z2 * z2;
+  // Terms in pairs (Estrin's scheme): the processor works on all of them at a time.
+  const auto pair = [&](double low, double high) {
+    return Lanes::broadcast(low) + z * Lanes::broadcast(high);
   };
-  f64x4 series = term(f64x4::broadcast(0x1.4b0a26c5f2aefp-4), 0x1.687a6e7c95176p-5);
-  series = term(term(series, 0x1.eb905e8575054p-5), 0x1.10ac75dc602b1p-4);
-  series = term(term(series, 0x1.3b18b294bebf9p-4), 0x1.745cf0b0e03bdp-4);
-  series = term(term(series, 0x1.c71c727143318p-4), 0x1.24924923d44c6p-3);
-  series = term(term(series, 0x1.999999999a3ddp-3), 0x1.5555555555555p-2);
-  const f64x4 twice = s + s;
-  return (exponent(a) - exponent(b)) * f64x4::broadcast(std::numbers::ln2) +
+  const Lanes low = pair(0x1.5555555555555p-2, 0x1.999999999a3ddp-3) +
+                    z2 * pair(0x1.24924923d44c6p-3, 0x1.c71c727143318p-4);
+  const Lanes middle = pair(0x1.745cf0b0e03bdp-4, 0x1.3b18b294bebf9p-4) +
+                       z2 * pair(0x1.10ac75dc602b1p-4, 0x1.eb905e8575054p-5);
+  const Lanes high = pair(0x1.687a6e7c95176p-5, 0x1.4b0a26c5f2aefp-4);
+  const Lanes series = low + z4 * (middle + z4 * high);
+  const Lanes twice = s + s;
+  return (exponent(a) - exponent(b)) * Lanes::broadcast(std::numbers::ln2) +
          (twice + twice * (z * series));
 }
 
@@ -5214,20 +5337,21 @@ namespace detail {
 
 inline namespace AIB_ISA {
 
-inline f64x4 load4(const double* p) { return f64x4::load(p); }
-inline f64x4 load4(const float* p) { return f64x4::convert(p); }
-inline f64x4 load4(const std::uint8_t* p) {
-  const double inside[4] = {p[0] ? 1.0 : 0.0, p[1] ? 1.0 : 0.0, p[2] ? 1.0 : 0.0, p[3] ? 1.0 : 0.0};
-  return f64x4::load(inside);
+inline f64x8 load8(const double* p) { return f64x8::load(p); }
+inline f64x8 load8(const float* p) { return f64x8::convert(p); }
+inline f64x8 load8(const std::uint8_t* p) {
+  double inside[8];
+  for (std::size_t i = 0; i < 8; ++i) inside[i] = p[i] ? 1.0 : 0.0;
+  return f64x8::load(inside);
 }
 
-/// Four from `p`, of which `n` are there: the others are 0.
+/// Eight from `p`, of which `n` are there: the others are 0.
 template <class T>
-f64x4 load4(const T* p, std::size_t n) {
-  if (n >= 4) return load4(p);
-  T some[4] = {};
+f64x8 load8(const T* p, std::size_t n) {
+  if (n >= 8) return load8(p);
+  T some[8] = {};
   std::copy_n(p, n, some);
-  return load4(some);
+  return load8(some);
 }
 
 }  // namespace AIB_ISA
@@ -5239,7 +5363,7 @@ inline namespace AIB_ISA {
 /// Which sums are wanted: those of the log ratio (and the counts) take half the time.
 enum class error_set { all, log_ratio };
 
-/// Adds up rows of pixels, four at a time in fixed lanes: every instruction set gives the same
+/// Adds up rows of pixels, eight at a time in fixed lanes: every instruction set gives the same
 /// bits.
 template <error_set Set = error_set::all>
 class error_adder {
@@ -5260,39 +5384,39 @@ class error_adder {
   /// Pixels whose log ratios are kept until their mean is known.
   struct block {
     static constexpr std::size_t size = 512;
-    f64x4 log_ratio[size / 4];
-    f64x4 weight[size / 4];
+    f64x8 log_ratio[size / 8];
+    f64x8 weight[size / 8];
   };
   /// A pixel that does not count is estimate = reference = 1: all its errors are 0.
   struct pixels {
-    f64x4 estimate;
-    f64x4 reference;
-    f64x4 weight;  ///< 1 where the pixel counts, else 0
+    f64x8 estimate;
+    f64x8 reference;
+    f64x8 weight;  ///< 1 where the pixel counts, else 0
   };
 
-  f64x4 transformed(f64x4 raw) const;
-  pixels select(f64x4 estimate, f64x4 reference, const std::uint8_t* mask, std::size_t n);
-  f64x4 add(const pixels& p);
-  void add_errors(const pixels& p, f64x4 log_ratio);
+  f64x8 transformed(f64x8 raw) const;
+  pixels select(f64x8 estimate, f64x8 reference, const std::uint8_t* mask, std::size_t n);
+  f64x8 add(const pixels& p);
+  void add_errors(const pixels& p, f64x8 log_ratio);
   void add_log_ratios(const block& b, std::size_t n);
 
-  static f64x4 number(double x) { return f64x4::broadcast(x); }
-  static f64x4 is_less(f64x4 a, f64x4 b) { return choose(a, b, number(1), number(0)); }
-  static f64x4 absolute(f64x4 a) { return max(a, number(0) - a); }
+  static f64x8 number(double x) { return f64x8::broadcast(x); }
+  static f64x8 is_less(f64x8 a, f64x8 b) { return choose(a, b, number(1), number(0)); }
+  static f64x8 absolute(f64x8 a) { return max(a, number(0) - a); }
 
   pixel_rules rules_;
   bool changes_estimate_;  ///< by transform or clamp
   stats::moments log_ratio_;
-  f64x4 n_reference_ = number(0);
-  f64x4 n_estimate_ = number(0);
-  f64x4 abs_log_ = number(0);
-  f64x4 abs_difference_ = number(0);
-  f64x4 squared_difference_ = number(0);
-  f64x4 abs_relative_ = number(0);
-  f64x4 squared_relative_ = number(0);
-  f64x4 abs_inverse_ = number(0);
-  f64x4 squared_inverse_ = number(0);
-  f64x4 below_delta_[3] = {number(0), number(0), number(0)};
+  f64x8 n_reference_ = number(0);
+  f64x8 n_estimate_ = number(0);
+  f64x8 abs_log_ = number(0);
+  f64x8 abs_difference_ = number(0);
+  f64x8 squared_difference_ = number(0);
+  f64x8 abs_relative_ = number(0);
+  f64x8 squared_relative_ = number(0);
+  f64x8 abs_inverse_ = number(0);
+  f64x8 squared_inverse_ = number(0);
+  f64x8 below_delta_[3] = {number(0), number(0), number(0)};
 };
 
 template <error_set Set>
@@ -5303,47 +5427,47 @@ void error_adder<Set>::add(std::span<const Estimate> estimate,
   block b;
   for (std::size_t first = 0; first < estimate.size(); first += block::size) {
     const std::size_t n = std::min(block::size, estimate.size() - first);
-    for (std::size_t i = 0; i < n; i += 4) {
+    for (std::size_t i = 0; i < n; i += 8) {
       const std::size_t at = first + i;
       const pixels p =
-          select(detail::load4(estimate.data() + at, n - i),
-                 detail::load4(reference.data() + at, n - i), mask ? mask + at : nullptr, n - i);
-      b.log_ratio[i / 4] = add(p);
-      b.weight[i / 4] = p.weight;
+          select(detail::load8(estimate.data() + at, n - i),
+                 detail::load8(reference.data() + at, n - i), mask ? mask + at : nullptr, n - i);
+      b.log_ratio[i / 8] = add(p);
+      b.weight[i / 8] = p.weight;
     }
     add_log_ratios(b, n);
   }
 }
 
 template <error_set Set>
-f64x4 error_adder<Set>::transformed(f64x4 raw) const {
-  const f64x4 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
+f64x8 error_adder<Set>::transformed(f64x8 raw) const {
+  const f64x8 e = number(rules_.transform.scale) * raw + number(rules_.transform.shift);
   return min(max(e, number(rules_.clamp_min)), number(rules_.clamp_max));
 }
 
 /// Applies the rules.
 template <error_set Set>
-typename error_adder<Set>::pixels error_adder<Set>::select(f64x4 raw,
-                                                           f64x4 reference,
+typename error_adder<Set>::pixels error_adder<Set>::select(f64x8 raw,
+                                                           f64x8 reference,
                                                            const std::uint8_t* mask,
                                                            std::size_t n) {
-  const f64x4 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
-  f64x4 e = raw;
-  f64x4 has_estimate = is_less(zero, raw) * is_less(raw, inf);
-  f64x4 has_reference =
+  const f64x8 zero = number(0), inf = number(std::numeric_limits<double>::infinity());
+  f64x8 e = raw;
+  f64x8 has_estimate = is_less(zero, raw) * is_less(raw, inf);
+  f64x8 has_reference =
       is_less(number(rules_.min), reference) * is_less(reference, number(rules_.max));
   if (changes_estimate_) {
     e = transformed(raw);
     has_estimate = has_estimate * is_less(zero, e) * is_less(e, inf);
   }
   if (mask) {
-    const f64x4 inside = detail::load4(mask, n);
+    const f64x8 inside = detail::load8(mask, n);
     has_estimate = has_estimate * inside;
     has_reference = has_reference * inside;
   }
   n_estimate_ = n_estimate_ + has_estimate;
   n_reference_ = n_reference_ + has_reference;
-  const f64x4 weight = has_estimate * has_reference;
+  const f64x8 weight = has_estimate * has_reference;
   return {.estimate = choose(zero, weight, e, number(1)),
           .reference = choose(zero, weight, reference, number(1)),
           .weight = weight};
@@ -5351,20 +5475,20 @@ typename error_adder<Set>::pixels error_adder<Set>::select(f64x4 raw,
 
 /// Adds all but the moments of the log ratios, and returns those.
 template <error_set Set>
-f64x4 error_adder<Set>::add(const pixels& p) {
-  const f64x4 e = changes_estimate_ ? max(p.estimate, number(rules_.clamp_log)) : p.estimate;
-  const f64x4 log_ratio = p.weight * math::log_ratio(p.reference, e);
+f64x8 error_adder<Set>::add(const pixels& p) {
+  const f64x8 e = changes_estimate_ ? max(p.estimate, number(rules_.clamp_log)) : p.estimate;
+  const f64x8 log_ratio = p.weight * math::log_ratio(p.reference, e);
   if constexpr (Set == error_set::all) add_errors(p, log_ratio);
   return log_ratio;
 }
 
 template <error_set Set>
-void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
-  const f64x4 e = p.estimate, r = p.reference;
-  const f64x4 per_reference = number(1) / r;
-  const f64x4 difference = absolute(e - r);
-  const f64x4 relative = difference * per_reference;
-  const f64x4 inverse = absolute(number(1) / e - per_reference);
+void error_adder<Set>::add_errors(const pixels& p, f64x8 log_ratio) {
+  const f64x8 e = p.estimate, r = p.reference;
+  const f64x8 per_reference = number(1) / r;
+  const f64x8 difference = absolute(e - r);
+  const f64x8 relative = difference * per_reference;
+  const f64x8 inverse = absolute(number(1) / e - per_reference);
   abs_log_ = abs_log_ + absolute(log_ratio);
   abs_difference_ = abs_difference_ + difference;
   squared_difference_ = squared_difference_ + difference * difference;
@@ -5373,7 +5497,7 @@ void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
   abs_inverse_ = abs_inverse_ + inverse;
   squared_inverse_ = squared_inverse_ + inverse * inverse;
   // Without division: 1.25^k is exact in binary, and so is its product with a float.
-  const f64x4 larger = max(e, r), smaller = min(e, r);
+  const f64x8 larger = max(e, r), smaller = min(e, r);
   const auto below = [&](double delta) {
     return p.weight * is_less(larger, number(delta) * smaller);
   };
@@ -5384,15 +5508,15 @@ void error_adder<Set>::add_errors(const pixels& p, f64x4 log_ratio) {
 
 template <error_set Set>
 void error_adder<Set>::add_log_ratios(const block& b, std::size_t n) {
-  f64x4 counts = number(0), total = number(0), squares = number(0);
-  for (std::size_t i = 0; 4 * i < n; ++i) {
+  f64x8 counts = number(0), total = number(0), squares = number(0);
+  for (std::size_t i = 0; 8 * i < n; ++i) {
     counts = counts + b.weight[i];
     total = total + b.log_ratio[i];
   }
   const double count = sum(counts);
   const double mean = count > 0 ? sum(total) / count : 0;
-  for (std::size_t i = 0; 4 * i < n; ++i) {
-    const f64x4 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
+  for (std::size_t i = 0; 8 * i < n; ++i) {
+    const f64x8 deviation = b.log_ratio[i] - number(mean) * b.weight[i];
     squares = squares + deviation * deviation;
   }
   log_ratio_ += stats::moments::from(static_cast<std::uint64_t>(count), mean, sum(squares));
@@ -5400,7 +5524,7 @@ void error_adder<Set>::add_log_ratios(const block& b, std::size_t n) {
 
 template <error_set Set>
 error_sums error_adder<Set>::result() const {
-  const auto count = [](f64x4 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
+  const auto count = [](f64x8 lanes) { return static_cast<std::uint64_t>(sum(lanes)); };
   return {.log_ratio = log_ratio_,
           .n_reference = count(n_reference_),
           .n_estimate = count(n_estimate_),
@@ -15557,6 +15681,89 @@ inline void write_mesh(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/io/ply_positions.hpp
+
+namespace aib::io {
+
+/// Walks the vertices of a binary PLY file block by block: for files larger than memory.
+///
+/// Throws format_error where the file is no binary PLY, is damaged, or holds Gaussian splats.
+class ply_positions {
+ public:
+  explicit ply_positions(const std::filesystem::path& path)
+      : file_(path),
+        header_(read_ply_header(file_)),
+        vertex_(detail::ply_vertex_element(header_, path)),
+        data_(file_, header_.data_offset, detail::byte_order(header_.format)) {
+    if (header_.format == ply_format::ascii)
+      throw format_error(path, "ply: a binary file expected, found ascii");
+    if (vertex_.find("f_dc_0") && vertex_.find("opacity"))
+      throw format_error(path, "ply: a cloud expected, found 3D Gaussian splats");
+    const auto columns = detail::find_scalars(vertex_, {"x", "y", "z"});
+    if (!columns) throw format_error(path, "ply: element vertex has no properties x, y and z");
+    columns_ = *columns;
+    for (const ply_element& element : header_.elements) {
+      if (&element == &vertex_) break;
+      data_.skip(element);
+    }
+  }
+  ply_positions(const ply_positions&) = delete;
+  ply_positions& operator=(const ply_positions&) = delete;
+
+  [[nodiscard]] std::uint64_t size() const { return vertex_.count; }
+
+  /// Whether the file holds float: its points count from the world's origin.
+  [[nodiscard]] bool is_float() const {
+    return std::all_of(columns_.begin(), columns_.end(), [&](std::size_t i) {
+      return vertex_.properties[i].type == ply_type::float32;
+    });
+  }
+
+  /// Makes `block` the next up to 65 536 positions; false at the end.
+  [[nodiscard]] bool next(std::vector<Eigen::Vector3d>& block) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(size() - read_, 1 << 16));
+    block.resize(n);
+    if (vertex_.has_list()) {
+      for (Eigen::Vector3d& p : block) p = next_row();
+    } else {
+      read_columns(block);
+    }
+    read_ += n;
+    return n > 0;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d next_row() {
+    data_.read_row(vertex_, detail::no_list, row_);
+    return {row_.values[columns_[0]], row_.values[columns_[1]], row_.values[columns_[2]]};
+  }
+
+  void read_columns(std::vector<Eigen::Vector3d>& block) {
+    const std::size_t stride = vertex_.row_bytes();
+    const char* rows = data_.stream()->take(block.size() * stride, vertex_.name);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t column = columns_[static_cast<std::size_t>(axis)];
+      const char* from = rows;
+      for (std::size_t i = 0; i < column; ++i) from += size_of(vertex_.properties[i].type);
+      with_type(vertex_.properties[column].type, [&]<class T>(std::type_identity<T>) {
+        const std::endian order = detail::byte_order(header_.format);
+        for (std::size_t i = 0; i < block.size(); ++i)
+          block[i][axis] = static_cast<double>(load<T>(from + i * stride, order));
+      });
+    }
+  }
+
+  input_file file_;
+  ply_header header_;
+  const ply_element& vertex_;
+  detail::ply_binary_data data_;
+  detail::ply_triple columns_{};
+  detail::ply_row row_;
+  std::uint64_t read_ = 0;
+};
+
+}  // namespace aib::io
+
 // aib/io/pose_arrays.hpp
 
 namespace aib::io {
@@ -17169,6 +17376,50 @@ inline void write_npz(const std::filesystem::path& path,
 }  // namespace aib::io
 #endif
 
+// aib/math/angle_of.hpp
+
+namespace aib::math {
+
+inline namespace AIB_ISA {
+
+/// Angles of the vectors (x, y), y >= 0, from the x axis, in radians, [0, pi], in four lanes:
+/// within 5e-16 of std::atan2(y, x), none more than 7e-16 of itself; 0 for (0, 0). The same
+/// bits on every machine.
+///
+/// The angle of the shorter over the longer side is that of a near centre, 0, pi/8 or pi/4, and the
+/// arc tangent of at most tan(pi/16), by its Taylor series.
+inline f64x4 angle_of(f64x4 x, f64x4 y) {
+  constexpr double pi = std::numbers::pi;
+  constexpr double tan_1 = 0.19891236737965800, tan_3 = 0.66817863791929891;  // of pi/16, 3 pi/16
+  constexpr double tan_2 = std::numbers::sqrt2 - 1;
+  const auto all = [](double value) { return f64x4::broadcast(value); };
+  const f64x4 zero = all(0), width = max(x, zero - x);
+  const f64x4 low = min(width, y),
+              high = max(max(width, y), all(std::numeric_limits<double>::min()));
+
+  const auto beyond = [&](double tangent, f64x4 yes, f64x4 no) {
+    return choose(all(tangent) * high, low, yes, no);
+  };
+  const f64x4 tangent = beyond(tan_3, all(1), beyond(tan_1, all(tan_2), zero));
+  const f64x4 centre = beyond(tan_3, all(pi / 4), beyond(tan_1, all(pi / 8), zero));
+  const f64x4 u = (low - tangent * high) / (high + tangent * low);
+  const f64x4 z = u * u;
+  const auto term = [&](f64x4 higher, double n) { return all(1 / n) - higher * z; };
+  f64x4 series = all(1.0 / 25);
+  series = term(term(term(series, 23), 21), 19);
+  series = term(term(term(series, 17), 15), 13);
+  series = term(term(term(series, 11), 9), 7);
+  series = term(term(series, 5), 3);
+  f64x4 angle = centre + (u - u * (z * series));
+
+  angle = choose(width, y, all(pi / 2) - angle, angle);
+  return choose(x, zero, all(pi) - angle, angle);
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib::math
+
 // aib/search/triangle_tree.hpp
 
 namespace aib::search {
@@ -18355,13 +18606,18 @@ class joint_counts {
     return *this;
   }
 
+  /// Pairs in one rotation bin and one column.
+  [[nodiscard]] std::uint64_t at(std::size_t rotation, std::size_t column) const {
+    return counts_[rotation * columns() + column];
+  }
+
   /// Pairs in rotation bins [0, rotation_end) and columns [column, column_end).
   [[nodiscard]] std::uint64_t sum(std::size_t rotation_end,
                                   std::size_t column,
                                   std::size_t column_end) const {
     std::uint64_t n = 0;
     for (std::size_t r = 0; r < rotation_end; ++r) {
-      for (std::size_t c = column; c < column_end; ++c) n += counts_[r * columns() + c];
+      for (std::size_t c = column; c < column_end; ++c) n += at(r, c);
     }
     return n;
   }
@@ -18654,6 +18910,14 @@ class frame_pairs {
   /// Exact errors of one pair.
   [[nodiscard]] pair_error error(std::size_t i, std::size_t j) const;
 
+  /// Calls `visit` with the errors of frame i and those of a row, ascending: the numbers of `error`
+  /// up to rounding, many at once.
+  ///
+  /// visit   void(std::size_t j, double rotation_deg, double translation_deg), the latter NaN where
+  ///         there is no direction
+  template <class Visit>
+  void for_each_error(std::size_t i, pair_row row, Visit&& visit) const;
+
   /// Counts the pairs of every frame i with the frames of `row(i)` by their errors.
   ///
   /// row   pair_row(std::size_t i), within [0, frames())
@@ -18685,6 +18949,11 @@ class frame_pairs {
     double rotation[block], direction[block];
     std::uint64_t rotation_cell[block], direction_cell[block];
   };
+  /// Squared sines and cosines of errors, of rotations of half the angle, both times a length.
+  struct block_errors {
+    double rotation_sine2[block], rotation_cosine[block], sine2[block], cosine[block];
+    bool has_direction[block];
+  };
   /// Where a pair counts, by the cells of its keys. Cells of directions: those of front, those of
   /// back, no_direction.
   struct place_tables {
@@ -18695,6 +18964,7 @@ class frame_pairs {
   static constexpr std::uint64_t no_direction = 2 * key_table::size();
 
   [[nodiscard]] block_keys keys_of(std::size_t i, std::size_t j) const;
+  [[nodiscard]] block_errors errors_of(std::size_t i, std::size_t j) const;
   /// Where the pair of i and j + k counts whose keys lie in the cell of an edge.
   [[nodiscard]] std::size_t place(std::size_t i,
                                   std::size_t j,
@@ -18835,6 +19105,64 @@ inline void frame_pairs::count_block(std::size_t i,
   }
 }
 
+/// Not from 1 - cos^2: cross products and the vector of the quaternion keep small angles.
+inline frame_pairs::block_errors frame_pairs::errors_of(std::size_t i, std::size_t j) const {
+  block_errors out;
+  const double w = residual_[0][i], x = residual_[1][i], y = residual_[2][i], z = residual_[3][i];
+  const double *ws = &residual_[0][j], *xs = &residual_[1][j], *ys = &residual_[2][j],
+               *zs = &residual_[3][j];
+  for (std::size_t k = 0; k < block; ++k) {
+    const double vx = w * xs[k] - x * ws[k] - (y * zs[k] - z * ys[k]);
+    const double vy = w * ys[k] - y * ws[k] - (z * xs[k] - x * zs[k]);
+    const double vz = w * zs[k] - z * ws[k] - (x * ys[k] - y * xs[k]);
+    out.rotation_sine2[k] = vx * vx + vy * vy + vz * vz;
+    out.rotation_cosine[k] = std::abs(w * ws[k] + x * xs[k] + y * ys[k] + z * zs[k]);
+  }
+  const Eigen::Matrix3d& m = reference_from_estimate_[i];
+  const double g_certain = reference_.certain() * reference_.certain();
+  const double p_certain = estimate_.certain() * estimate_.certain();
+  for (std::size_t k = 0; k < block; ++k) {
+    const double g0 = reference_.x[j + k] - reference_.x[i];
+    const double g1 = reference_.y[j + k] - reference_.y[i];
+    const double g2 = reference_.z[j + k] - reference_.z[i];
+    const double p0 = estimate_.x[j + k] - estimate_.x[i];
+    const double p1 = estimate_.y[j + k] - estimate_.y[i];
+    const double p2 = estimate_.z[j + k] - estimate_.z[i];
+    const double u0 = m(0, 0) * p0 + m(0, 1) * p1 + m(0, 2) * p2;
+    const double u1 = m(1, 0) * p0 + m(1, 1) * p1 + m(1, 2) * p2;
+    const double u2 = m(2, 0) * p0 + m(2, 1) * p1 + m(2, 2) * p2;
+    const double c0 = g1 * u2 - g2 * u1, c1 = g2 * u0 - g0 * u2, c2 = g0 * u1 - g1 * u0;
+    out.sine2[k] = c0 * c0 + c1 * c1 + c2 * c2;
+    out.cosine[k] = g0 * u0 + g1 * u1 + g2 * u2;
+    out.has_direction[k] =
+        (g0 * g0 + g1 * g1 + g2 * g2 > g_certain) & (p0 * p0 + p1 * p1 + p2 * p2 > p_certain);
+  }
+  return out;
+}
+
+template <class Visit>
+void frame_pairs::for_each_error(std::size_t i, pair_row row, Visit&& visit) const {
+  double rotation[block], translation[block];
+  for (std::size_t j = row.begin; j < row.end; j += block) {
+    const block_errors errors = errors_of(i, j);
+    for (std::size_t k = 0; k < block; k += f64x4::width) {
+      const auto angle = [&](const double* cosine, const double* sine2) {
+        return math::angle_of(f64x4::load(cosine + k), sqrt(f64x4::load(sine2 + k)));
+      };
+      angle(errors.rotation_cosine, errors.rotation_sine2).store(rotation + k);
+      angle(errors.cosine, errors.sine2).store(translation + k);
+    }
+    for (std::size_t k = 0; k < std::min(block, row.end - j); ++k) {
+      double translation_deg = math::degrees(translation[k]);
+      if (!errors.has_direction[k]) {
+        translation_deg =
+            error(i, j + k).translation_deg.value_or(std::numeric_limits<double>::quiet_NaN());
+      }
+      visit(j + k, math::degrees(2 * rotation[k]), translation_deg);
+    }
+  }
+}
+
 template <class Row>
 joint_counts frame_pairs::count_rows(angle_bins rotation,
                                      angle_bins translation,
@@ -18954,16 +19282,14 @@ struct area_sums {
   }
 };
 
-/// Sums `visit(area_sums&, i, j)` over all pairs i < j of n frames.
-template <class Visit>
-area_sums sum_pairs(std::size_t n, const auc_options& options, Visit&& visit) {
+/// Sums of all pairs; `add_row(area_sums&, i)` adds those of frame i.
+template <class AddRow>
+area_sums sum_rows(std::size_t n, const auc_options& options, AddRow&& add_row) {
   return reduce_chunks<area_sums>(
-      n, 64, options.threads, options.control, area_sums(options.max_deg),
+      n, 16, options.threads, options.control, area_sums(options.max_deg),
       [&](const chunk& c) {
         area_sums sums(options.max_deg);
-        for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < n; ++j) visit(sums, i, j);
-        }
+        for (std::size_t i = c.begin; i < c.end; ++i) add_row(sums, i);
         return sums;
       },
       [](area_sums a, const area_sums& b) { return std::move(a) + b; });
@@ -18999,10 +19325,12 @@ inline auc_result exact_auc(const registered_frames& frames,
                             const auc_options& options) {
   const frame_pairs pairs(frames.estimate, frames.reference);
   const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error e = pairs.error(i, j);
-    s.n_zero_baseline += e.translation_deg ? 0 : 1;
-    s.add(e.rotation_deg, e.translation_deg.value_or(360));
+  const area_sums sums = sum_rows(n, options, [&](area_sums& s, std::size_t i) {
+    pairs.for_each_error(i, {i + 1, n}, [&](std::size_t, double rotation, double translation) {
+      const bool has_direction = !std::isnan(translation);
+      s.n_zero_baseline += has_direction ? 0 : 1;
+      s.add(rotation, has_direction ? translation : 360);
+    });
   });
   const std::uint64_t n_pairs = n * (n - 1) / 2;
   if (sums.n_zero_baseline == n_pairs) {
@@ -19022,26 +19350,26 @@ inline auc_result colmap_auc(const trajectory& estimate,
   for (const math::rigid3& pose : reference.world_from_camera) total += pose.is_finite() ? 1 : 0;
   const association matched =
       associate(estimate, reference, {.by = named ? match_by::name : match_by::index});
-  registered_frames frames = registered("auc", matched.estimate, matched.reference);
+  const registered_frames frames = registered("auc", matched.estimate, matched.reference);
   if (total < 2) throw undefined_error(message("auc: 2 reference frames expected, found ", total));
   const frame_pairs pairs(frames.estimate, frames.reference);
-  std::reverse(frames.estimate.begin(), frames.estimate.end());
-  std::reverse(frames.reference.begin(), frames.reference.end());
-  const frame_pairs swapped(frames.estimate, frames.reference);
   const std::size_t n = pairs.frames();
-  const area_sums sums = sum_pairs(n, options, [&](area_sums& s, std::size_t i, std::size_t j) {
-    const pair_error one = pairs.error(i, j), other = swapped.error(n - 1 - j, n - 1 - i);
-    const math::rigid3 &gi = frames.reference[n - 1 - i], &gj = frames.reference[n - 1 - j];
-    const double baseline = (gj.translation - gi.translation).norm();
-    const bool short_reference =
-        baseline < options.position_accuracy || !pairs.reference_baselines().has_direction(i, j);
-    const double without = short_reference ? 0 : 90;
-    const auto translation = [&](const pair_error& e) {
-      return short_reference ? 0 : e.translation_deg.value_or(without);
+  const auto has_short_reference = [&](std::size_t i, std::size_t j) {
+    const auto &gi = frames.reference[i].translation, &gj = frames.reference[j].translation;
+    return (gj - gi).norm() < options.position_accuracy ||
+           !pairs.reference_baselines().has_direction(i, j);
+  };
+  const area_sums sums = sum_rows(n, options, [&](area_sums& s, std::size_t i) {
+    const auto add = [&](std::size_t j, double rotation, double translation) {
+      const bool has_direction = !std::isnan(translation);
+      s.n_zero_baseline += has_direction ? 0 : 1;
+      if (has_short_reference(i, j))
+        s.add(rotation, 0);
+      else
+        s.add(rotation, has_direction ? translation : 90);
     };
-    s.n_zero_baseline += one.translation_deg ? 0 : 2;
-    s.add(one.rotation_deg, translation(one));
-    s.add(other.rotation_deg, translation(other));
+    pairs.for_each_error(i, {0, i}, add);
+    pairs.for_each_error(i, {i + 1, n}, add);
   });
   return result_of(sums, sums.below + sums.last / 2,
                    static_cast<std::uint64_t>(total) * (total - 1), total - n, options);
@@ -19574,6 +19902,67 @@ inline kitti_odometry_result kitti_odometry(const trajectory& estimate,
 
 }  // namespace aib::pose
 
+// aib/pose/pair_histogram.hpp
+
+namespace aib::pose {
+
+struct pair_histogram_options {
+  std::vector<double> rotation_deg = {1, 2, 5, 10, 15, 20, 30, 60, 90};  ///< edges, (0, 360]
+  std::vector<double> translation_deg = {1, 2, 5, 10, 15, 20, 30, 60, 90, 120, 150};
+  unsigned threads = 0;  ///< 0: all
+  struct control control = {};
+};
+
+/// Frame pairs by rotation error (rows) and direction error (columns). Bin k holds
+/// edge[k - 1] <= error < edge[k]; the first begins at 0, the last has no end.
+struct pair_histogram_result {
+  std::vector<double> rotation_deg;                ///< edges, ascending, each once
+  std::vector<double> translation_deg;             ///< edges, ascending, each once
+  std::vector<std::vector<std::uint64_t>> counts;  ///< one row a rotation bin
+  std::vector<std::uint64_t> without_direction;    ///< pairs of each rotation bin that have none
+  std::uint64_t n_pairs;
+  std::uint64_t n_zero_baseline;  ///< sum of `without_direction`
+  std::size_t n_unregistered;     ///< frames left out because a pose is not finite
+};
+
+/// The joint histogram of relative rotation and signed direction errors of all frame pairs, of
+/// which every RRA, RTA and binned AUC with these edges is a sum.
+///
+/// estimate    associated with the reference; its world and scale are its own
+///
+/// Throws argument_error if the trajectories are not associated or an edge is out of range,
+/// undefined_error if fewer than two frames are registered.
+inline pair_histogram_result pair_histogram(const trajectory& estimate,
+                                            const trajectory& reference,
+                                            const pair_histogram_options& options = {}) {
+  const registered_frames frames = registered("pair_histogram", estimate, reference);
+  if (frames.index.size() < 2) {
+    throw undefined_error(message("pair_histogram: 2 registered frames expected, found ",
+                                  frames.index.size(), " of ", estimate.size()));
+  }
+  const joint_counts counts =
+      frame_pairs(frames.estimate, frames.reference)
+          .count(angle_bins(options.rotation_deg), angle_bins(options.translation_deg),
+                 options.threads, options.control);
+  const std::size_t columns = counts.translation().size();
+  pair_histogram_result out{.rotation_deg = counts.rotation().edges_deg(),
+                            .translation_deg = counts.translation().edges_deg(),
+                            .counts = {},
+                            .without_direction = {},
+                            .n_pairs = counts.pairs(),
+                            .n_zero_baseline = counts.without_direction(),
+                            .n_unregistered = estimate.size() - frames.index.size()};
+  for (std::size_t r = 0; r < counts.rotation().size(); ++r) {
+    std::vector<std::uint64_t> row;
+    for (std::size_t c = 0; c < columns; ++c) row.push_back(counts.at(r, c));
+    out.counts.push_back(std::move(row));
+    out.without_direction.push_back(counts.at(r, columns));
+  }
+  return out;
+}
+
+}  // namespace aib::pose
+
 // aib/pose/registration.hpp
 
 namespace aib::pose {
@@ -19848,7 +20237,6 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
   struct found {
     double error;
     std::size_t i, j;
-    pair_error angles;
     bool operator<(const found& o) const {
       if (error != o.error) return error > o.error;
       return i != o.i ? i < o.i : j < o.j;
@@ -19863,26 +20251,32 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
       pairs.frames(), 64, options.threads, options.control, std::vector<found>(),
       [&](const chunk& c) {
         std::vector<found> list;
+        double least = -1;  // of the worst so far, once there are enough
         for (std::size_t i = c.begin; i < c.end; ++i) {
-          for (std::size_t j = i + 1; j < pairs.frames(); ++j) {
-            const pair_error e = pairs.error(i, j);
-            list.push_back({std::max(e.rotation_deg, e.translation_deg.value_or(0)), i, j, e});
-            if (list.size() >= 2 * options.n + 1000) keep_worst(list);
-          }
-          keep_worst(list);
+          const auto add = [&](std::size_t j, double rotation, double translation) {
+            const double error = translation > rotation ? translation : rotation;  // NaN: rotation
+            if (!(error > least)) return;
+            list.push_back({error, i, j});
+            if (list.size() < 2 * options.n + 100) return;
+            keep_worst(list);
+            least = list.empty() ? least : list.back().error;
+          };
+          pairs.for_each_error(i, {i + 1, pairs.frames()}, add);
         }
+        keep_worst(list);
         return list;
       },
-      [&](std::vector<found> a, std::vector<found> b) {
+      [&](std::vector<found> a, const std::vector<found>& b) {
         a.insert(a.end(), b.begin(), b.end());
         keep_worst(a);
         return a;
       });
   std::vector<worst_pair> out;
   for (const found& f : worst) {
+    const pair_error e = pairs.error(f.i, f.j);
     out.push_back({frame_name(estimate, reference, frames.index[f.i]),
-                   frame_name(estimate, reference, frames.index[f.j]), f.angles.rotation_deg,
-                   f.angles.translation_deg});
+                   frame_name(estimate, reference, frames.index[f.j]), e.rotation_deg,
+                   e.translation_deg});
   }
   return out;
 }
@@ -20717,3 +21111,644 @@ struct interval {
 }
 
 }  // namespace aib::stats
+
+// aib/stream/partition.hpp
+
+namespace aib::stream {
+
+/// A coordinate triple as it lies on disk.
+using point = std::array<float, 3>;
+
+/// Space cut into tiles by planes along the axes, each at the median of a sample, across the
+/// longest side.
+class partition {
+ public:
+  /// 2^depth tiles.
+  partition(std::vector<point> sample, int depth) : depth_(depth) {
+    nodes_.resize((std::size_t{1} << depth) - 1);
+    split(sample, 0, 0);
+  }
+
+  [[nodiscard]] std::size_t size() const { return nodes_.size() + 1; }
+
+  [[nodiscard]] std::uint16_t tile_of(const point& p) const {
+    std::size_t node = 0;
+    while (node < nodes_.size()) {
+      const cut& c = nodes_[node];
+      node = 2 * node + (p[c.axis] < c.place ? 1 : 2);
+    }
+    return static_cast<std::uint16_t>(node - nodes_.size());
+  }
+
+ private:
+  struct cut {
+    std::size_t axis = 0;
+    float place = 0;
+  };
+
+  static std::size_t longest_axis(std::span<const point> points) {
+    std::array<float, 3> extent{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] =
+          std::minmax_element(points.begin(), points.end(),
+                              [k](const point& a, const point& b) { return a[k] < b[k]; });
+      extent[k] = (*high)[k] - (*low)[k];
+    }
+    return static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) -
+                                    extent.begin());
+  }
+
+  void split(std::span<point> points, std::size_t node, int level) {
+    if (level == depth_) return;
+    const std::size_t half = points.size() / 2;
+    if (!points.empty()) {
+      const std::size_t k = longest_axis(points);
+      std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half),
+                       points.end(), [k](const point& a, const point& b) { return a[k] < b[k]; });
+      nodes_[node] = {k, points[half][k]};
+    }
+    split(points.first(half), 2 * node + 1, level + 1);
+    split(points.subspan(half), 2 * node + 2, level + 1);
+  }
+
+  int depth_;
+  std::vector<cut> nodes_;
+};
+
+}  // namespace aib::stream
+
+// aib/stream/spill.hpp
+
+namespace aib::stream {
+
+/// Numbers that wait on disk. The file has no name from the start: it is gone when this object is,
+/// and when the program is killed.
+template <class T>
+requires(std::is_trivially_copyable_v<T>) class spill {
+ public:
+  /// Throws io_error where the folder is not writable.
+  explicit spill(const std::filesystem::path& folder) : folder_(folder) {
+    std::string name = (folder / "aib_spill.XXXXXX").string();
+    file_ = ::mkostemp(name.data(), O_CLOEXEC);
+    if (file_ < 0) fail("cannot create a temporary file");
+    ::unlink(name.c_str());
+  }
+  spill(spill&& other) noexcept
+      : folder_(std::move(other.folder_)),
+        file_(std::exchange(other.file_, -1)),
+        written_(other.written_),
+        buffer_(std::move(other.buffer_)) {}
+  spill& operator=(spill&&) = delete;
+  ~spill() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+  [[nodiscard]] std::uint64_t size() const { return written_ + buffer_.size(); }
+
+  void append(const T& value) {
+    buffer_.push_back(value);
+    if (buffer_.size() * sizeof(T) >= buffer_bytes) flush();
+  }
+  void append(std::span<const T> values) {
+    flush();
+    write(values);
+  }
+
+  /// Values first .. first + to.size().
+  void read(std::uint64_t first, std::span<T> to) {
+    flush();
+    auto* bytes = reinterpret_cast<char*>(to.data());
+    std::size_t left = to.size_bytes();
+    for (auto offset = static_cast<off_t>(first * sizeof(T)); left > 0;) {
+      const ssize_t got = ::pread(file_, bytes, left, offset);
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) fail("cannot read a temporary file");
+      bytes += got;
+      offset += got;
+      left -= static_cast<std::size_t>(got);
+    }
+  }
+
+ private:
+  static constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
+
+  void flush() {
+    write(buffer_);
+    buffer_.clear();
+  }
+
+  void write(std::span<const T> values) {
+    const auto* bytes = reinterpret_cast<const char*>(values.data());
+    for (std::size_t left = values.size_bytes(); left > 0;) {
+      const ssize_t put = ::write(file_, bytes, left);
+      if (put < 0 && errno == EINTR) continue;
+      if (put < 0) fail("cannot write a temporary file");
+      bytes += put;
+      left -= static_cast<std::size_t>(put);
+    }
+    written_ += values.size();
+  }
+
+  [[noreturn]] void fail(const char* what) const {
+    throw io_error(folder_, message(what, ": ", std::strerror(errno)));
+  }
+
+  std::filesystem::path folder_;
+  int file_ = -1;
+  std::uint64_t written_ = 0;
+  std::vector<T> buffer_;
+};
+
+}  // namespace aib::stream
+
+// aib/stream/stored_distances.hpp
+
+namespace aib::stream {
+
+/// Distances that lie on disk, with the statistics of cloud::distances, bit for bit.
+class stored_distances {
+ public:
+  stored_distances(const std::filesystem::path& folder, const cloud::distance_options& options)
+      : values_(folder), options_(options), upper_halves_(halves) {}
+
+  /// Takes the next distance: NaN for a point that is not finite.
+  void append(float value) {
+    chunk_.push_back(value);
+    if (chunk_.size() == cloud::detail::value_chunk) take_chunk();
+  }
+  /// To be called after the last.
+  void finish() { take_chunk(); }
+
+  [[nodiscard]] std::size_t n_dropped() const { return sums_.dropped; }
+  [[nodiscard]] std::size_t n_finite() const { return values_.size() - sums_.dropped; }
+  [[nodiscard]] double mean() const { return sums_.sum / counted(); }
+  [[nodiscard]] double rmse() const { return std::sqrt(sums_.squares / counted()); }
+  [[nodiscard]] double max() const { return demand_values(), sums_.max; }
+  [[nodiscard]] double share_beyond() const {
+    return static_cast<double>(n_beyond_) / static_cast<double>(n_finite());
+  }
+
+  [[nodiscard]] double median() const {
+    demand_values();
+    const double place = 0.5 * static_cast<double>(n_counted() - 1);
+    const auto below = static_cast<std::uint64_t>(place);
+    const double low = nth(below);
+    const double share = place - static_cast<double>(below);
+    return share == 0 ? low : low + (static_cast<double>(nth(below + 1)) - low) * share;
+  }
+
+  [[nodiscard]] std::vector<double> shares_below(std::span<const double> tau) const {
+    std::vector<std::uint64_t> below(tau.size());
+    for_each_value([&](float d) {
+      for (std::size_t k = 0; k < tau.size(); ++k) below[k] += static_cast<double>(d) < tau[k];
+    });
+    std::vector<double> shares;
+    for (const std::uint64_t n : below)
+      shares.push_back(static_cast<double>(n) / static_cast<double>(n_finite()));
+    return shares;
+  }
+
+ private:
+  static constexpr std::size_t halves = std::size_t{1} << 16;
+
+  [[nodiscard]] std::uint64_t n_counted() const {
+    return n_finite() - (cloud::detail::drops(options_) ? n_beyond_ : 0);
+  }
+  [[nodiscard]] double counted() const { return demand_values(), static_cast<double>(n_counted()); }
+  void demand_values() const {
+    if (n_counted() > 0) return;
+    throw undefined_error(message("stream::compare_clouds: no distance that counts (", n_finite(),
+                                  " points, ", n_beyond_, " beyond max_distance)"));
+  }
+
+  [[nodiscard]] bool counts(float d) const {
+    return !std::isnan(d) && !(cloud::detail::drops(options_) && std::isinf(d));
+  }
+
+  /// Distances are not negative, so that their bits have their order.
+  void take_chunk() {
+    n_beyond_ += cloud::detail::cut_at_maximum(chunk_, options_);
+    sums_ += cloud::detail::sums_of(chunk_, options_);
+    for (const float d : chunk_) {
+      if (counts(d)) ++upper_halves_[std::bit_cast<std::uint32_t>(d) >> 16];
+    }
+    values_.append(std::span<const float>(chunk_));
+    chunk_.clear();
+  }
+
+  template <class Visit>
+  void for_each_value(Visit&& visit) const {
+    std::vector<float> block;
+    for (std::uint64_t first = 0; first < values_.size(); first += block.size()) {
+      block.resize(static_cast<std::size_t>(
+          std::min<std::uint64_t>(values_.size() - first, cloud::detail::value_chunk)));
+      values_.read(first, block);
+      for (const float d : block) visit(d);
+    }
+  }
+
+  /// Bin of the value of a rank, and how many values lie in the bins below it.
+  static std::pair<std::uint32_t, std::uint64_t> bin_of(std::span<const std::uint64_t> bins,
+                                                        std::uint64_t rank) {
+    std::uint64_t below = 0;
+    std::uint32_t bin = 0;
+    while (below + bins[bin] <= rank) below += bins[bin++];
+    return {bin, below};
+  }
+
+  /// The value of a rank, from 0: by the upper half of its bits, then the lower.
+  [[nodiscard]] float nth(std::uint64_t rank) const {
+    const auto [upper, below] = bin_of(upper_halves_, rank);
+    std::vector<std::uint64_t> lower_halves(halves);
+    for_each_value([&, upper = upper](float d) {
+      const auto bits = std::bit_cast<std::uint32_t>(d);
+      if (counts(d) && bits >> 16 == upper) ++lower_halves[bits & 0xffff];
+    });
+    return std::bit_cast<float>(upper << 16 | bin_of(lower_halves, rank - below).first);
+  }
+
+  mutable spill<float> values_;
+  cloud::distance_options options_;
+  std::vector<float> chunk_;
+  std::vector<std::uint64_t> upper_halves_;
+  cloud::detail::distance_sums sums_;
+  std::uint64_t n_beyond_ = 0;
+};
+
+}  // namespace aib::stream
+
+// aib/stream/tiled_cloud.hpp
+
+namespace aib::stream {
+
+/// A cloud on disk: how many points it has, and the origin that a reader would give it.
+struct cloud_file {
+  std::filesystem::path path;
+  std::uint64_t size = 0;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+};
+
+namespace detail {
+
+inline void demand_go(const control& control) {
+  if (control.stop.stop_requested()) throw stopped_error("stopped");
+}
+
+/// Calls `visit(index, position)` for each point of a file.
+template <class Visit>
+void for_each_position(const std::filesystem::path& path, const control& control, Visit&& visit) {
+  io::ply_positions positions(path);
+  std::vector<Eigen::Vector3d> block;
+  std::uint64_t index = 0;
+  while (positions.next(block)) {
+    demand_go(control);
+    for (const Eigen::Vector3d& p : block) visit(index++, p);
+  }
+}
+
+}  // namespace detail
+
+/// Looks through a file for its origin, as io::read_ply_cloud finds it.
+[[nodiscard]] inline cloud_file open_cloud(const std::filesystem::path& path,
+                                           const control& control = {}) {
+  cloud_file file{.path = path};
+  {
+    const io::ply_positions positions(path);
+    file.size = positions.size();
+    if (positions.is_float()) return file;
+  }
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = -low;
+  detail::for_each_position(path, control, [&](std::uint64_t, const Eigen::Vector3d& p) {
+    if (!p.allFinite()) return;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  });
+  if (low[0] <= high[0]) file.origin = cloud::natural_origin(low, high);
+  return file;
+}
+
+namespace detail {
+
+/// Calls `visit(index, point)` for each point as a cloud in memory has it, counted from `origin`.
+template <class Visit>
+void for_each_point(const cloud_file& file,
+                    const Eigen::Vector3d& origin,
+                    const control& control,
+                    Visit&& visit) {
+  const Eigen::Vector3d shift = file.origin - origin;
+  for_each_position(file.path, control, [&](std::uint64_t i, const Eigen::Vector3d& position) {
+    const Eigen::Vector3d local = position - file.origin;
+    const Eigen::Vector3f stored = local.cast<float>();
+    const Eigen::Vector3d moved = shift + stored.cast<double>();
+    const Eigen::Vector3f p = moved.cast<float>();
+    visit(i, point{p.x(), p.y(), p.z()});
+  });
+}
+
+}  // namespace detail
+
+[[nodiscard]] inline bool is_finite(const point& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/// A box in float, empty until something is added.
+struct float_box {
+  point low{HUGE_VALF, HUGE_VALF, HUGE_VALF};
+  point high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+
+  void add(const point& p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+
+  /// Not above the squared distance, calculated in float, to any point in the box: each operation
+  /// rounds once, and rounding keeps order.
+  [[nodiscard]] float squared_distance(const point& p) const {
+    float d[3];
+    for (std::size_t k = 0; k < 3; ++k) d[k] = std::max({low[k] - p[k], p[k] - high[k], 0.0f});
+    return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  }
+};
+
+/// The points of one tile, in the order of their file.
+struct tile {
+  spill<point> points;
+  float_box box;
+};
+
+/// A cloud in tiles on disk.
+struct tiled_cloud {
+  static constexpr std::uint16_t nowhere = 0xffff;  ///< tile of a point that is not finite
+
+  std::vector<tile> tiles;
+  spill<std::uint16_t> tile_of;  ///< of each point, in the order of the file
+  std::uint64_t n_finite = 0;
+
+  tiled_cloud(const cloud_file& file,
+              const Eigen::Vector3d& origin,
+              const partition& cuts,
+              const std::filesystem::path& folder,
+              const control& control)
+      : tile_of(folder) {
+    for (std::size_t t = 0; t < cuts.size(); ++t) tiles.push_back({spill<point>(folder), {}});
+    detail::for_each_point(file, origin, control, [&](std::uint64_t, const point& p) {
+      const std::uint16_t t = is_finite(p) ? cuts.tile_of(p) : nowhere;
+      tile_of.append(t);
+      if (t == nowhere) return;
+      tiles[t].points.append(p);
+      tiles[t].box.add(p);
+      ++n_finite;
+    });
+  }
+};
+
+/// Every k-th finite point, at most about n.
+inline void add_sample(const cloud_file& file,
+                       const Eigen::Vector3d& origin,
+                       std::uint64_t n,
+                       const control& control,
+                       std::vector<point>& sample) {
+  const std::uint64_t step = std::max<std::uint64_t>(1, file.size / n);
+  detail::for_each_point(file, origin, control, [&](std::uint64_t i, const point& p) {
+    if (i % step == 0 && is_finite(p)) sample.push_back(p);
+  });
+}
+
+}  // namespace aib::stream
+
+// aib/stream/compare_clouds.hpp
+
+namespace aib::stream {
+
+struct compare_clouds_options {
+  std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes that the search may take
+  std::filesystem::path folder = {};  ///< for what is spilled; the system's temporary one
+  cloud::compare_options compare = {};
+};
+
+inline namespace AIB_ISA {
+
+namespace tiles {
+
+/// Bytes that a point of a slice takes, as a query and as a target: itself, its index, its tree and
+/// what sorting takes.
+inline constexpr std::uint64_t bytes_a_point = 140;
+
+/// More tiles would take too many open files; they are then searched in slices.
+inline constexpr int most_cuts = 7;
+
+/// Searches the queries of one cloud in the tiles of another.
+class search_pass {
+ public:
+  search_pass(tiled_cloud& targets,
+              std::size_t slice,
+              float squared_bound,
+              const compare_clouds_options& options)
+      : targets_(targets), slice_(slice), bound_(squared_bound), options_(options) {}
+
+  /// Squared distance of each query: tiles that may have something nearer, nearest tile first.
+  [[nodiscard]] std::vector<float> nearest(std::span<const Eigen::Vector3f> queries) {
+    std::vector<float> best(queries.size(), bound_);
+    float_box box;
+    for (const Eigen::Vector3f& q : queries) box.add(triple(q));
+    for (const std::size_t t : by_distance(box)) visit(targets_.tiles[t], queries, best);
+    return best;
+  }
+
+  static point triple(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+
+ private:
+  /// Tiles that have points, from the one whose box is nearest to the middle of a box.
+  [[nodiscard]] std::vector<std::size_t> by_distance(const float_box& box) const {
+    point middle;
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = box.low[k] / 2 + box.high[k] / 2;
+    std::vector<std::pair<float, std::size_t>> order;
+    for (std::size_t t = 0; t < targets_.tiles.size(); ++t) {
+      const tile& candidate = targets_.tiles[t];
+      if (candidate.points.size() > 0)
+        order.emplace_back(candidate.box.squared_distance(middle), t);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::size_t> index;
+    for (const auto& [distance, t] : order) index.push_back(t);
+    return index;
+  }
+
+  void visit(tile& target, std::span<const Eigen::Vector3f> queries, std::vector<float>& best) {
+    std::vector<std::uint32_t> asked;
+    std::vector<Eigen::Vector3f> asking;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (!(target.box.squared_distance(triple(queries[i])) < best[i])) continue;
+      asked.push_back(static_cast<std::uint32_t>(i));
+      asking.push_back(queries[i]);
+    }
+    if (asked.empty()) return;
+    std::vector<Eigen::Vector3f> points;
+    for (std::uint64_t first = 0; first < target.points.size(); first += points.size()) {
+      read(target, first, slice_, points);
+      const auto found = search(asking, points);
+      for (std::size_t i = 0; i < asked.size(); ++i)
+        best[asked[i]] = std::min(best[asked[i]], found[i]);
+    }
+  }
+
+  [[nodiscard]] std::vector<float> search(std::span<const Eigen::Vector3f> queries,
+                                          std::span<const Eigen::Vector3f> points) const {
+    const aib::search::curve order = aib::search::common_curve(queries, points);
+    const unsigned threads = options_.compare.threads;
+    const control stop{.stop = options_.compare.control.stop};
+    const aib::search::box_tree a(queries, order, threads, stop);
+    const aib::search::box_tree b(points, order, threads, stop);
+    return aib::search::nearest_squared(
+        a, b, {.squared_bound = bound_, .threads = threads, .control = stop});
+  }
+
+ public:
+  /// Up to `most` points of a tile from `first` on.
+  static void read(tile& t,
+                   std::uint64_t first,
+                   std::size_t most,
+                   std::vector<Eigen::Vector3f>& points) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(t.points.size() - first, most));
+    std::vector<point> triples(n);
+    t.points.read(first, triples);
+    points.resize(n);
+    for (std::size_t i = 0; i < n; ++i) points[i] = {triples[i][0], triples[i][1], triples[i][2]};
+  }
+
+ private:
+  tiled_cloud& targets_;
+  std::size_t slice_;
+  float bound_;
+  const compare_clouds_options& options_;
+};
+
+/// Distances that come tile by tile, put in the order of the file.
+inline stored_distances in_file_order(tiled_cloud& queries,
+                                      spill<float>& by_tile,
+                                      const compare_clouds_options& options,
+                                      const cloud::distance_options& how) {
+  constexpr std::size_t block = 4096;
+  struct cursor {
+    std::uint64_t next, end;
+    std::vector<float> values;
+    std::size_t at = 0;
+  };
+  std::vector<cursor> cursors;
+  std::uint64_t first = 0;
+  for (const tile& t : queries.tiles) {
+    cursors.push_back({first, first + t.points.size(), {}});
+    first += t.points.size();
+  }
+  const auto take = [&](cursor& c) {
+    if (c.at == c.values.size()) {
+      c.values.resize(static_cast<std::size_t>(std::min<std::uint64_t>(block, c.end - c.next)));
+      by_tile.read(c.next, c.values);
+      c.next += c.values.size();
+      c.at = 0;
+    }
+    return c.values[c.at++];
+  };
+  stored_distances stored(options.folder, how);
+  std::vector<std::uint16_t> tile_of;
+  for (std::uint64_t i = 0; i < queries.tile_of.size(); i += tile_of.size()) {
+    detail::demand_go(options.compare.control);
+    tile_of.resize(static_cast<std::size_t>(
+        std::min<std::uint64_t>(queries.tile_of.size() - i, cloud::detail::value_chunk)));
+    queries.tile_of.read(i, tile_of);
+    for (const std::uint16_t t : tile_of) {
+      stored.append(t == tiled_cloud::nowhere ? std::numeric_limits<float>::quiet_NaN()
+                                              : std::sqrt(take(cursors[t])));
+    }
+  }
+  stored.finish();
+  return stored;
+}
+
+/// How far the searches of both directions are.
+struct progress {
+  const control& watched;
+  std::uint64_t total;
+  std::uint64_t done = 0;
+
+  void add(std::uint64_t n) {
+    done += n;
+    if (watched.progress) watched.progress(static_cast<double>(done) / static_cast<double>(total));
+  }
+};
+
+inline stored_distances distances(tiled_cloud& queries,
+                                  tiled_cloud& targets,
+                                  std::size_t slice,
+                                  const compare_clouds_options& options,
+                                  const cloud::distance_options& how,
+                                  progress& progress) {
+  search_pass search(targets, slice, cloud::detail::squared_bound(how), options);
+  spill<float> by_tile(options.folder);
+  std::vector<Eigen::Vector3f> points;
+  for (tile& t : queries.tiles) {
+    for (std::uint64_t first = 0; first < t.points.size(); first += points.size()) {
+      search_pass::read(t, first, slice, points);
+      by_tile.append(std::span<const float>(search.nearest(points)));
+      progress.add(points.size());
+    }
+  }
+  return in_file_order(queries, by_tile, options, how);
+}
+
+inline void demand_points(const tiled_cloud& c, const char* which, const cloud_file& file) {
+  if (c.n_finite > 0) return;
+  throw undefined_error(message("stream::compare_clouds: no finite point in the ", which,
+                                " cloud (", file.size, " points)"));
+}
+
+}  // namespace tiles
+
+/// Compares clouds that need not fit in memory: what cloud::compare says of the same files, bit for
+/// bit.
+///
+/// estimate, reference   binary PLY files
+///
+/// Both are cut into tiles by planes and spilled; a tile is searched in its counterpart, and its
+/// points near enough to another tile in that as well. Spilled files have no names: nothing stays
+/// behind, whatever happens. Disk: about 44 bytes a point of both.
+///
+/// Throws undefined_error if either cloud has no finite point, argument_error if a tau is above
+/// max_distance or memory below 16 MB, format_error where a file is no binary PLY.
+[[nodiscard]] inline cloud::comparison compare_clouds(const std::filesystem::path& estimate,
+                                                      const std::filesystem::path& reference,
+                                                      compare_clouds_options options = {}) {
+  constexpr std::uint64_t least = 16 << 20;
+  if (options.memory < least) {
+    throw argument_error(message("stream::compare_clouds: memory of ", least,
+                                 " bytes or more expected, found ", options.memory));
+  }
+  if (options.folder.empty()) options.folder = std::filesystem::temp_directory_path();
+  const cloud::compare_options& c = options.compare;
+  const cloud::distance_options how{
+      .max_distance = c.max_distance, .rule = c.rule, .threads = c.threads, .control = c.control};
+  cloud::detail::check_maximum(how);
+  for (const double tau : c.tau) cloud::detail::check_tau(tau, how);
+  const cloud_file e = open_cloud(estimate, c.control), r = open_cloud(reference, c.control);
+  const auto slice = static_cast<std::size_t>(options.memory / 2 / tiles::bytes_a_point);
+  const auto needed = static_cast<int>(std::bit_width((e.size + r.size) / slice));
+  std::vector<point> sample;
+  constexpr std::uint64_t sampled = 100'000;
+  add_sample(e, r.origin, sampled, c.control, sample);
+  add_sample(r, r.origin, sampled, c.control, sample);
+  const partition cuts(std::move(sample), std::min(tiles::most_cuts, needed));
+  tiled_cloud est(e, r.origin, cuts, options.folder, c.control);
+  tiled_cloud ref(r, r.origin, cuts, options.folder, c.control);
+  tiles::demand_points(est, "estimated", e);
+  tiles::demand_points(ref, "reference", r);
+  tiles::progress progress{c.control, est.n_finite + ref.n_finite};
+  const auto to_reference = tiles::distances(est, ref, slice, options, how, progress);
+  const auto to_estimate = tiles::distances(ref, est, slice, options, how, progress);
+  return cloud::score(to_reference, to_estimate, c.tau);
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::stream

@@ -8,6 +8,7 @@
 #include <aib/core/isa.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -53,6 +54,19 @@ struct comparison {
   double reference_beyond;  ///< share of the reference not below max_distance
 };
 
+/// Distances of the points of a cloud, in memory or not, that know their statistics.
+template <class T>
+concept distance_statistics = requires(const T& d, std::span<const double> tau) {
+  { d.mean() } -> std::convertible_to<double>;
+  { d.median() } -> std::convertible_to<double>;
+  { d.rmse() } -> std::convertible_to<double>;
+  { d.max() } -> std::convertible_to<double>;
+  { d.n_finite() } -> std::convertible_to<std::size_t>;
+  { d.n_dropped() } -> std::convertible_to<std::size_t>;
+  { d.share_beyond() } -> std::convertible_to<double>;
+  { d.shares_below(tau) } -> std::convertible_to<std::vector<double>>;
+};
+
 namespace detail {
 
 inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
@@ -88,9 +102,10 @@ struct two_way_distances {
 }
 
 /// Precision, recall and F-score at thresholds, in their order: with many of them, a curve.
-[[nodiscard]] inline std::vector<threshold_scores> scores_at(const distances& to_reference,
-                                                             const distances& to_estimate,
-                                                             std::span<const double> tau) {
+template <distance_statistics Distances>
+[[nodiscard]] std::vector<threshold_scores> scores_at(const Distances& to_reference,
+                                                      const Distances& to_estimate,
+                                                      std::span<const double> tau) {
   const auto precision = to_reference.shares_below(tau);
   const auto recall = to_estimate.shares_below(tau);
   std::vector<threshold_scores> scores;
@@ -102,9 +117,10 @@ struct two_way_distances {
 }
 
 /// The scores of distances in both directions, wherever they come from.
-[[nodiscard]] inline comparison score(const distances& to_reference,
-                                      const distances& to_estimate,
-                                      std::span<const double> tau = {}) {
+template <distance_statistics Distances>
+[[nodiscard]] comparison score(const Distances& to_reference,
+                               const Distances& to_estimate,
+                               std::span<const double> tau = {}) {
   const double accuracy = to_reference.mean();
   const double completeness = to_estimate.mean();
   comparison c{.accuracy = accuracy,

@@ -118,6 +118,60 @@ inline void check_maximum(const distance_options& options) {
   }
 }
 
+inline void check_tau(double tau, const distance_options& options) {
+  if (!options.max_distance || tau <= *options.max_distance) return;
+  throw argument_error(
+      message("cloud::distances: tau ", tau, " is above max_distance ", *options.max_distance));
+}
+
+/// Whether distances beyond the maximum are left out.
+inline bool drops(const distance_options& options) {
+  return options.max_distance && options.rule == maximum_rule::drop;
+}
+
+/// Makes of distances not below the maximum what the rule says; returns how many there are.
+inline std::size_t cut_at_maximum(std::span<float> values, const distance_options& options) {
+  if (!options.max_distance) return 0;
+  const float beyond = drops(options) ? std::numeric_limits<float>::infinity()
+                                      : static_cast<float>(*options.max_distance);
+  std::size_t n = 0;
+  for (float& value : values) {
+    if (static_cast<double>(value) >= *options.max_distance) {
+      value = beyond;
+      ++n;
+    }
+  }
+  return n;
+}
+
+/// Sums over a chunk of distances; those of chunks are added in order.
+struct distance_sums {
+  std::size_t dropped = 0;
+  double sum = 0, squares = 0, max = 0;
+
+  distance_sums& operator+=(const distance_sums& other) {
+    dropped += other.dropped;
+    sum += other.sum;
+    squares += other.squares;
+    max = std::max(max, other.max);
+    return *this;
+  }
+};
+
+inline distance_sums sums_of(std::span<const float> values, const distance_options& options) {
+  const bool skip_infinite = drops(options);
+  distance_sums s;
+  for (const float value : values) {
+    const double d = value;
+    if (std::isnan(d)) ++s.dropped;
+    if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
+    s.sum += d;
+    s.squares += d * d;
+    s.max = std::max(s.max, d);
+  }
+  return s;
+}
+
 /// A float not below the square of the largest distance that counts.
 inline float squared_bound(const distance_options& options) {
   if (!options.max_distance) return std::numeric_limits<float>::infinity();
@@ -168,43 +222,15 @@ inline distances::distances(std::vector<float> values, const distance_options& o
   summarize();
 }
 
-inline void distances::apply_maximum() {
-  if (!options_.max_distance) return;
-  const bool drop = options_.rule == maximum_rule::drop;
-  const float beyond =
-      drop ? std::numeric_limits<float>::infinity() : static_cast<float>(*options_.max_distance);
-  for (float& value : values_) {
-    if (static_cast<double>(value) >= *options_.max_distance) {
-      value = beyond;
-      ++n_beyond_;
-    }
-  }
-}
+inline void distances::apply_maximum() { n_beyond_ = detail::cut_at_maximum(values_, options_); }
 
 inline void distances::summarize() {
-  struct sums {
-    std::size_t dropped = 0;
-    double sum = 0, squares = 0, max = 0;
-  };
-  const bool skip_infinite = options_.max_distance && options_.rule == maximum_rule::drop;
   const auto sum_chunk = [&](const chunk& c) {
-    sums s;
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const double d = values_[i];
-      if (std::isnan(d)) ++s.dropped;
-      if (std::isnan(d) || (skip_infinite && std::isinf(d))) continue;
-      s.sum += d;
-      s.squares += d * d;
-      s.max = std::max(s.max, d);
-    }
-    return s;
+    return detail::sums_of(values().subspan(c.begin, c.end - c.begin), options_);
   };
-  const auto combine = [](sums a, const sums& b) {
-    return sums{a.dropped + b.dropped, a.sum + b.sum, a.squares + b.squares,
-                std::max(a.max, b.max)};
-  };
-  const sums total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
-                                   sums{}, sum_chunk, combine);
+  const auto total = reduce_chunks(values_.size(), detail::value_chunk, options_.threads, {},
+                                   detail::distance_sums{}, sum_chunk,
+                                   [](auto a, const auto& b) { return a += b; });
   n_dropped_ = total.dropped;
   sum_ = total.sum;
   sum_of_squares_ = total.squares;
@@ -263,12 +289,7 @@ inline stats::histogram distances::histogram(double high, std::size_t bins) cons
 
 inline std::vector<double> distances::shares_below(std::span<const double> tau) const {
   if (n_finite() == 0) demand_values("share");
-  for (const double t : tau) {
-    if (options_.max_distance && t > *options_.max_distance) {
-      throw argument_error(
-          message("cloud::distances: tau ", t, " is above max_distance ", *options_.max_distance));
-    }
-  }
+  for (const double t : tau) detail::check_tau(t, options_);
   std::vector<double> ascending(tau.begin(), tau.end());
   std::sort(ascending.begin(), ascending.end());
   const auto first_above = [&](double d) {
