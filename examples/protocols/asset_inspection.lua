@@ -112,17 +112,51 @@ local depth_metrics <const> = {
   { name = "delta3", better = "higher", of_length = true },
 }
 
---- Adds a frame's errors; the truth is brought to the method's size, never the other way.
-local function add_frame(errors, name, unit, truth, files, input)
-  local est <close> = aib.io.read_depth(files:frame(unit.result.depth, name))
+local gsd_taus <const> = { 1, 2, 5 }
+local strata <const> = { "inside", "edge", "thin" }
+
+--- Adds a frame's errors to an accumulator; the truth is brought to the method's size, never the other way. Shares
+--- within some ground sampling distances go to `gsd`, by tau, where the scale is known.
+local function add_frame(errors, gsd, name, est, scale, truth, input)
   local full <close> = truth.depth(name)
   local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
-  errors:add(est, ref, { name = name })
+  errors:add(est, ref, { name = name, labels = input.details and aib.depth.strata(ref) or nil })
+  local camera = input.details and scale and (truth.cameras or {})[name]
+  if not camera then return end
+  local ok, surface = pcall(aib.depth.surface_errors, est, ref, camera, {
+    tau = gsd_taus, transform = { scale = scale, shift = 0 },
+  })
+  if not ok and aib.error_kind(surface) ~= "undefined" then error(surface, 0) end
+  for _, tau in ipairs(ok and gsd_taus or {}) do
+    gsd[tau] = gsd[tau] or aib.stats.moments()
+    gsd[tau]:add(surface.within_total[tau])
+  end
+end
+
+--- Errors inside of surfaces, at depth edges and in thin structures, and shares of the truth's pixels within some
+--- ground sampling distances.
+local function add_depth_details(errors, gsd, how, cell)
+  for label, stratum in ipairs(strata) do
+    local of_stratum = errors:of_label(label)
+    local mean = #of_stratum > 0 and cell:attempt(function() return of_stratum:result() end) or {}
+    for _, name in ipairs { "srmse", "coverage" } do
+      cell:within({ stratum = stratum }):add("depth." .. name, mean[name], {
+        better = name == "srmse" and "lower" or "higher", n = mean.n_defined, convention = "mean over frames",
+        options = how,
+      })
+    end
+  end
+  for _, tau in ipairs(gsd_taus) do
+    cell:add(("depth.within_%dgsd"):format(tau), gsd[tau] and gsd[tau].mean, {
+      better = "higher", n = gsd[tau] and #gsd[tau], convention = "share of the truth's pixels, mean over frames",
+      options = how,
+    })
+  end
 end
 
 --- Adds what an accumulator of frames found. Metrics of a length are those of `scaled`: frames whose scale is known,
 --- nil where there is none.
-local function add_depth(errors, scaled, truth, how_scaled, input, cell, frames)
+local function add_depth(errors, scaled, gsd, truth, how_scaled, input, cell, frames)
   local mean = cell:attempt(function() return errors:result() end, "depth") or { n_defined = 0 }
   local of_length = scaled == errors and mean
     or scaled and cell:attempt(function() return scaled:result() end) or { n_defined = 0 }
@@ -143,14 +177,17 @@ local function add_depth(errors, scaled, truth, how_scaled, input, cell, frames)
     end
   end
   frames["depth.srmse"] = kept
+  if input.details then add_depth_details(errors, gsd, with(how_scaled, how), cell) end
 end
 
 local function score_depth(unit, truth, files, frame, input, cell, frames)
   local errors = aib.depth.accumulate { transform = { scale = frame.scale or 1 } }
+  local gsd = {}
   for _, name in ipairs(files:present(unit.result.depth, truth.depth_names)) do
-    add_frame(errors, name, unit, truth, files, input)
+    local est <close> = aib.io.read_depth(files:frame(unit.result.depth, name))
+    add_frame(errors, gsd, name, est, frame.scale, truth, input)
   end
-  add_depth(errors, frame.scale and errors, truth, frame.how, input, cell, frames)
+  add_depth(errors, frame.scale and errors, gsd, truth, frame.how, input, cell, frames)
 end
 
 -- Points --------------------------------------------------------------------------------------------------------------
@@ -166,6 +203,18 @@ end
 local distance_metrics <const> = {
   "accuracy", "completeness", "chamfer", "chamfer_mean", "f1_distance", "accuracy_median", "completeness_median",
 }
+
+--- The same by label of the surface: glass, frame, truss, ...
+local function add_labels(cloud, truth, how, input, cell)
+  for _, of_label in ipairs(aib.cloud.compare_by_label(cloud, truth.reference, { tau = input.tau })) do
+    local sub = cell:within { label = truth.mesh and truth.mesh.label_names[of_label.label + 1] or of_label.label }
+    for _, name in ipairs { "accuracy", "completeness", "chamfer" } do
+      sub:add("cloud." .. name, of_label[name], {
+        unit = "m", better = "lower", n = of_label.n_estimate, options = how,
+      })
+    end
+  end
+end
 
 --- Adds the distances between a cloud in the frame of the truth and the true surface.
 local function add_cloud(all, truth, frame_how, input, cell)
@@ -192,6 +241,7 @@ local function add_cloud(all, truth, frame_how, input, cell)
     end
   end
   cell:add("cloud.n_outside", #all - #cloud, { n = #all })
+  if input.details and truth.reference.has_labels then add_labels(cloud, truth, how, input, cell) end
 end
 
 local function score_cloud(unit, truth, files, frame, input, cell)
@@ -288,22 +338,18 @@ end
 local function score_batch_depth(fit, truth, how, input, cell, frames)
   local has_truth = {}
   for _, name in ipairs(truth.depth_names) do has_truth[name] = true end
-  local all, scaled = aib.depth.accumulate(), aib.depth.accumulate()
+  local all, scaled, gsd = aib.depth.accumulate(), aib.depth.accumulate(), {}
   for _, part in ipairs(fit.parts) do
     local scale = part.alignment and part.alignment.transform.scale
     local own = aib.depth.accumulate { transform = { scale = scale or 1 } }
     for i, name in ipairs(part.batch.names) do
       local est <close> = has_truth[name] and part.batch.depth(i) or nil
-      if est then
-        local full <close> = truth.depth(name)
-        local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
-        own:add(est, ref, { name = name })
-      end
+      if est then add_frame(own, gsd, name, est, scale, truth, input) end
     end
     all:merge(own)
     if scale then scaled:merge(own) end
   end
-  if #all > 0 then add_depth(all, #scaled > 0 and scaled or nil, truth, how, input, cell, frames) end
+  if #all > 0 then add_depth(all, #scaled > 0 and scaled or nil, gsd, truth, how, input, cell, frames) end
 end
 
 --- Points of all batches: from their depth maps, or the method's own cloud where it has one frame of reference.
@@ -452,6 +498,14 @@ local function add_tables(report, input)
       across = { "scene", "condition", "metric" }, metrics = {
         { "pose.auc30_intra", label = "within" }, { "pose.auc30_cross", label = "across" } } }
   end
+  if has_record(report, "depth.within_1gsd") then
+    report:table { title = "Depth, share of the truth within ground sampling distances", down = { "method" },
+      across = { "scene", "condition", "metric" }, metrics = { { "depth.within_1gsd", label = "1", percent = true },
+        { "depth.within_2gsd", label = "2", percent = true }, { "depth.within_5gsd", label = "5", percent = true } } }
+    report:table { title = "Depth, sRMSE by stratum", metrics = { "depth.srmse" }, down = { "method", "stratum" } }
+    report:table { title = "Points, completeness by label", metrics = { "cloud.completeness" },
+      down = { "method", "label" } }
+  end
   report:table { title = "Points, chamfer distance", metrics = { "cloud.chamfer" } }
   report:table { title = "Points, F1 of accuracy and completeness", metrics = { "cloud.f1_distance" } }
 end
@@ -531,6 +585,8 @@ return aib.protocol {
       help = "every so many rows and columns of depth maps give points" },
     results = { kind = "path", default = "", help = "folder that keeps finished units, which are reused" },
     shard = { kind = "path", default = "", help = "INDEX/COUNT: evaluate a part of the units, for aib-lua merge" },
+    details = { kind = "flag",
+      help = "also shares within 1, 2, 5 ground sampling distances, depth by strata, points by label" },
     per_frame = { kind = "flag", help = "keep the numbers of frames in the JSON, for paired comparisons" },
     tau = { kind = "list", of = "number", unit = "m", default = { 0.02, 0.05, 0.1 },
       help = "thresholds of precision, recall and F-score" },

@@ -38,6 +38,23 @@ local function results(t, benchmark, ...)
 end
 
 return aib.test {
+  ["details: strata share the pixels, ground sampling distances are nested, labels are named"] = function(t)
+    local report, found = support.protocol("asset_inspection"):run { benchmark = data, details = true }, {}
+    for _, r in ipairs(report:records()) do
+      if r.group.scene == "crane" and r.group.method == "SGBM, true poses" then
+        found[r.name .. "/" .. (r.group.stratum or r.group.label or "")] = r
+      end
+    end
+    local function value(name) return found[name].value end
+    t:check(value "depth.srmse/edge" > value "depth.srmse/inside", "depth is worse at edges")
+    t:equal(found["depth.srmse/inside"].n, 14)
+    local within = { value "depth.within_1gsd/", value "depth.within_2gsd/", value "depth.within_5gsd/" }
+    t:check(0 < within[1] and within[1] < within[2] and within[2] < within[3])
+    t:check(within[3] <= value "depth.coverage/")
+    t:check(value "cloud.completeness/tower" < value "cloud.completeness/")
+    t:check(value "cloud.accuracy_exact/" < value "cloud.accuracy/", "samples add to the distance")
+  end,
+
   ["poses, focal lengths, alignments and depth are what others computed"] = function(t)
     local path = root .. "/tests/golden/bundled.json"
     local found = records()
