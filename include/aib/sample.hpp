@@ -11,3 +11,4 @@
 #include <aib/sample/thin.hpp>
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>
+#include <aib/sample/voxel_grid.hpp>

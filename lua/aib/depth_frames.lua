@@ -54,8 +54,8 @@ local function name_in(pattern, file)
   return fits and file:sub(#before + 1, #file - #after) or nil
 end
 
---- Paths of the files that fit, by the name of their frame, and the names sorted.
-local function files_in(folder, pattern)
+--- Paths of the files that fit, by the name of their frame, and the names in the order of the files.
+function M.files_in(folder, pattern)
   local paths, names = {}, {}
   for _, file in ipairs(aib.system.names_in(folder)) do
     local name = name_in(pattern, file)
@@ -79,8 +79,8 @@ end
 --- paths, and `missing`, the names of the references without an estimate. Raises an io error where there is none.
 --- `folders` = { estimate =, reference =, estimate_pattern =, reference_pattern =, masks =, labels = }.
 function M.pair(folders)
-  local estimates, estimate_names = files_in(folders.estimate, folders.estimate_pattern or "*")
-  local references, names = files_in(folders.reference, folders.reference_pattern or "*")
+  local estimates, estimate_names = M.files_in(folders.estimate, folders.estimate_pattern or "*")
+  local references, names = M.files_in(folders.reference, folders.reference_pattern or "*")
   local frames = { missing = {} }
   for _, name in ipairs(names) do
     if estimates[name] then

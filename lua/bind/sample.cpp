@@ -6,9 +6,11 @@
 #include <aib/sample/thin.hpp>
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>
+#include <aib/sample/voxel_grid.hpp>
 
 #include "kit.hpp"
 #include <cstdint>
+#include <string>
 #include <utility>
 
 namespace aib::bind {
@@ -67,9 +69,26 @@ sample::unprojected place_point_map(const io::array& points,
                                  how);
 }
 
+std::string print_grid(const sample::voxel_grid& g) {
+  return message("voxel_grid(", g.size(), " voxels of ", g.n_points(), " points)");
+}
+
+void bind_voxel_grid(lua_State* state) {
+  type<sample::voxel_grid>(state, "voxel_grid", print_grid)
+      .length([](const sample::voxel_grid& g) { return g.size(); })
+      .field("n_points", [](const sample::voxel_grid& g) { return g.n_points(); })
+      .method("add", {"cloud"},
+              [](sample::voxel_grid& g, const cloud::cloud& points) {
+                g.add(points);
+                return self{};
+              })
+      .method("cloud", {}, [](const sample::voxel_grid& g) { return g.result(); });
+}
+
 }  // namespace
 
 void bind_sample(lua_State* state) {
+  bind_voxel_grid(state);
   module(state, "sample")
       .function("mesh", {"mesh", "options"},
                 [](lua_State* l, session& s, const mesh::mesh& surface, options& o) {
@@ -102,6 +121,13 @@ void bind_sample(lua_State* state) {
                   const auto how = voxel_options(o, s);
                   o.done();
                   return sample::voxel(points, how);
+                })
+      .function("voxel_grid", {"options"},
+                [](session& s, options& o) {
+                  const sample::voxel_options how{.size = o.number("size", 0),
+                                                  .threads = s.threads};
+                  o.done();
+                  return sample::voxel_grid(how);
                 })
       .function("unproject", {"depth", "camera", "pose", "options"},
                 [](lua_State* l, session& s, const depth::depth_map& map,

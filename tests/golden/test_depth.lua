@@ -206,4 +206,28 @@ return aib.test {
       run_surface { focal = 0, cameras = support.root .. "/examples/data/gt/office/poses" }
     end)
   end,
+
+  ["fuse_depth: the truth's depth maps are the truth's surface; confidence leaves out its share"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local office = support.root .. "/examples/data/gt/office"
+    local cloud_path = scratch.path .. "/cloud.ply"
+    local function fuse(own)
+      local inputs = { depth = office .. "/depth", poses = office .. "/poses", out = cloud_path, voxel = 0.25 }
+      inputs.stride = 4
+      for key, value in pairs(own) do inputs[key] = value end
+      local values = {}
+      for _, r in ipairs(support.protocol("fuse_depth"):run(inputs):records()) do values[r.name] = r.value end
+      return values, aib.io.read_cloud(cloud_path)
+    end
+    local values, cloud = fuse {}
+    t:equal(values["fuse.frames"], 16)
+    t:equal(values["fuse.kept_share"], 1.0)
+    t:equal(values["fuse.points"], #cloud)
+    local distances = aib.mesh.distances(cloud, aib.io.read_mesh(office .. "/mesh.ply"))
+    t:check(distances:median() < 0.02, "median distance " .. distances:median())
+    local surest = fuse { confidence = office .. "/depth", min = 0.5, rule = "percentile" }
+    local share = surest["fuse.kept_share"]  -- at most half: a facade has many pixels of one depth
+    t:check(share > 0.1 and share <= 0.5, "kept " .. share)
+    t:check(surest["fuse.points"] < values["fuse.points"])
+  end,
 }

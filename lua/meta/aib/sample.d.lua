@@ -41,6 +41,26 @@ function sample.thin(points, options) end
 ---@return aib.Cloud points
 function sample.voxel(points, options) end
 
+---Voxels that clouds are added to, one after another: memory grows with the voxels, not with the points. `#grid` is
+---their number.
+---@class aib.VoxelGrid
+---@field n_points integer  # added so far, finite ones
+local voxel_grid = {}
+
+---Adds the points of a cloud.
+---@param cloud aib.Cloud
+---@return aib.VoxelGrid self
+function voxel_grid:add(cloud) end
+
+---One point for each voxel: mean position and mean colour of its points.
+---@return aib.Cloud cloud
+function voxel_grid:cloud() end
+
+---Starts a grid of voxels on the lattice of the world.
+---@param options { size: number }
+---@return aib.VoxelGrid grid
+function sample.voxel_grid(options) end
+
 ---@class aib.UnprojectOptions
 ---@field confidence? aib.DepthMap
 ---@field min_confidence? number
