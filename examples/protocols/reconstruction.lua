@@ -25,17 +25,19 @@ local function aligned(estimate, points, input, report)
   return icp.transform * estimate
 end
 
+local lengths <const> = {
+  "accuracy", "accuracy_median", "completeness", "completeness_median", "chamfer", "chamfer_mean", "f1_distance",
+  "hausdorff",
+}
+
 local function add_comparison(compared, input, report)
   local how = { unit = "m", better = "lower", n = compared.n_estimate, options = {
     voxel = input.voxel, max_distance = input.max_distance, rule = input.rule, icp = input.icp } }
-  for _, name in ipairs { "accuracy", "accuracy_median", "completeness", "completeness_median", "chamfer",
-    "chamfer_mean", "f1_distance", "hausdorff" } do
-    report:add("cloud." .. name, compared[name], how)
-  end
+  for _, name in ipairs(lengths) do report:add("cloud." .. name, compared[name], how) end
   for _, tau in ipairs(input.tau) do
     for _, name in ipairs { "precision", "recall", "f_score" } do
       local metric = ("cloud.%s@%gm"):format(name, tau)
-      report:add(metric, compared[name][tau], { better = "higher", n = compared.n_estimate })
+      report:add(metric, compared[name] and compared[name][tau], { better = "higher", n = compared.n_estimate })
     end
   end
   if input.max_distance > 0 then
@@ -44,12 +46,83 @@ local function add_comparison(compared, input, report)
   end
 end
 
+--- The same for each label of the mesh or of the reference's points.
+local function add_labels(estimate, mesh, points, options, input, report)
+  local list = mesh and aib.mesh.compare_by_label(estimate, mesh, options)
+    or aib.cloud.compare_by_label(estimate, points, options)
+  for _, compared in ipairs(list) do
+    local group = report:within { label = compared.name or tostring(compared.label) }
+    add_comparison(compared, input, group)
+    if not compared.accuracy then
+      group:note(("%d points of the estimate, %d of the reference"):format(compared.n_estimate, compared.n_reference))
+    end
+  end
+end
+
+local function write_curve(path, to_reference, to_estimate, high)
+  local curve = aib.cloud.curve(to_reference, to_estimate, { max = high, steps = 100 })
+  local lines = { "tau,precision,recall,f_score" }
+  for i, tau in ipairs(curve.tau) do
+    lines[i + 1] = ("%.9g,%.9g,%.9g,%.9g"):format(tau, curve.precision[i], curve.recall[i], curve.f_score[i])
+  end
+  aib.system.write_text(path, table.concat(lines, "\n") .. "\n")
+end
+
+--- Clouds in the colours of their errors, the faces of a mesh in those of its completeness, curves.
+local function write_errors(estimate, mesh, points, input)
+  local to_reference = mesh and aib.mesh.distances(estimate, mesh) or aib.cloud.distances(estimate, points)
+  local to_estimate = aib.cloud.distances(points, estimate)
+  local high = math.max(1e-9, to_reference:quantile(0.95), to_estimate:quantile(0.95))
+  if #input.tau > 0 then high = 3 * math.max(table.unpack(input.tau)) end
+  aib.system.make_folder(input.errors_to)
+  local function write(name, cloud, errors)
+    aib.io.write_cloud(("%s/%s.ply"):format(input.errors_to, name), aib.cloud.colored(cloud, errors, { max = high }),
+      { scalars = { error = errors } })
+  end
+  write("accuracy", estimate, to_reference)
+  write("completeness", points, to_estimate)
+  write_curve(input.errors_to .. "/curve.csv", to_reference, to_estimate, high)
+  if not mesh then return end
+  local faces = aib.mesh.face_scores(estimate, mesh, { samples = points, tau = high / 3 })
+  aib.io.write_mesh(input.errors_to .. "/faces.ply", mesh, {
+    face_scalars = { accuracy = faces.accuracy, completeness = faces.completeness },
+    face_colors = aib.cloud.colors_of(faces.completeness, { max = high }),
+  })
+end
+
 local function add_normals(estimate, points, report)
   local function with_normals(cloud) return cloud.has_normals and cloud or aib.cloud.with_normals(cloud) end
   local n = aib.cloud.normal_consistency(with_normals(estimate), with_normals(points))
   for _, name in ipairs { "estimate_mean", "estimate_median", "reference_mean", "reference_median" } do
     report:add("cloud.normal_consistency_" .. name, n[name], { better = "higher" })
   end
+end
+
+local function search_options(input)
+  local options = { tau = input.tau, rule = input.rule }
+  if input.max_distance > 0 then options.max_distance = input.max_distance end
+  return options
+end
+
+--- The comparison of files that are larger than memory.
+local function compared_on_disk(input)
+  for _, name in ipairs { "voxel", "icp" } do
+    if input[name] > 0 then error(("--memory: --%s needs the clouds in memory"):format(name), 0) end
+  end
+  for _, name in ipairs { "normals", "labels" } do
+    if input[name] then error(("--memory: --%s needs the clouds in memory"):format(name), 0) end
+  end
+  if input.errors_to ~= "" then error("--memory: --errors-to needs the clouds in memory", 0) end
+  local progress <close> = aib.progress(100, "%")
+  local options, told = search_options(input), 0
+  options.memory = input.memory
+  options.progress = function(share)
+    while told < math.floor(100 * share) do
+      told = told + 1
+      progress:step()
+    end
+  end
+  return aib.stream.compare_clouds(input.estimate, input.reference, options)
 end
 
 return aib.protocol {
@@ -67,8 +140,12 @@ return aib.protocol {
     normals = { kind = "flag", help = "normal consistency, over 30 neighbours where there are no normals" },
     samples = { kind = "integer", default = 1000000, min = 1, help = "points sampled on a mesh" },
     seed = { kind = "integer", default = 1, min = 0, help = "of the sampling" },
+    labels = { kind = "flag", help = "every metric by label of the reference too" },
+    errors_to = { kind = "path", default = "", help = "writes coloured clouds, faces and curves there" },
+    memory = { kind = "path", default = "", help = "two large PLY files within so much, e.g. 2GB" },
   },
   run = function(input, report)
+    if input.memory ~= "" then return add_comparison(compared_on_disk(input), input, report) end
     local estimate = aib.io.read_cloud(input.estimate)
     local mesh, points = read_reference(input.reference)
     if mesh then
@@ -81,11 +158,12 @@ return aib.protocol {
       points = aib.sample.voxel(points, { size = input.voxel })
     end
     estimate = aligned(estimate, points, input, report)
-    local options = { tau = input.tau, rule = input.rule }
-    if input.max_distance > 0 then options.max_distance = input.max_distance end
+    local options = search_options(input)
     if mesh then options.samples = points end
     local compared = mesh and aib.mesh.compare(estimate, mesh, options) or aib.cloud.compare(estimate, points, options)
     add_comparison(compared, input, report)
+    if input.labels then add_labels(estimate, mesh, points, options, input, report) end
+    if input.errors_to ~= "" then write_errors(estimate, mesh, points, input) end
     if input.normals then add_normals(estimate, points, report) end
   end,
 }

@@ -69,6 +69,52 @@ return aib.test {
     t:check(found["cloud.recall@0.5m"] < found["cloud.precision@0.5m"], "recall has the floor of the samples")
   end,
 
+  ["reconstruction: on disk as in memory; errors are drawn, labels scored"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local mesh = scratch.path .. "/mesh.ply"
+    aib.system.write_text(mesh, [[
+ply
+format ascii 1.0
+comment labels: 1=left 2=right
+element vertex 6
+property float x
+property float y
+property float z
+element face 2
+property list uchar int vertex_indices
+property uint label
+end_header
+0 0 0
+1 0 0
+0 1 0
+5 0 0
+6 0 0
+5 1 0
+3 0 1 2 1
+3 3 4 5 2
+]])
+    local points = aib.sample.mesh(aib.io.read_mesh(mesh), { n = 500 })
+    local est, ref = scratch.path .. "/est.ply", scratch.path .. "/ref.ply"
+    aib.io.write_cloud(ref, points)
+    aib.io.write_cloud(est, aib.math.sim3 { translation = { 0, 0, 0.25 } } * points)
+    local memory = values("reconstruction", { estimate = est, reference = ref, tau = { 0.3 } })
+    t:equal(values("reconstruction", { estimate = est, reference = ref, tau = { 0.3 }, memory = "20MB" }), memory)
+    local found = {}
+    local report = support.protocol("reconstruction"):run {
+      estimate = est, reference = mesh, tau = { 0.3 }, samples = 900, labels = true, errors_to = scratch.path .. "/out",
+    }
+    for _, r in ipairs(report:records()) do found[(r.group and r.group.label or "all") .. " " .. r.name] = r.value end
+    t:equal(found["all cloud.accuracy"], 0.25)
+    t:equal(found["left cloud.accuracy"], 0.25)
+    t:equal(found["right cloud.precision@0.3m"], 1)
+    for _, name in ipairs { "accuracy", "completeness" } do
+      t:check(aib.io.read_cloud(("%s/out/%s.ply"):format(scratch.path, name)).has_colors, name)
+    end
+    t:equal(aib.io.read_mesh(scratch.path .. "/out/faces.ply").n_triangles, 2)
+    local curve = aib.system.read_text(scratch.path .. "/out/curve.csv")
+    t:check(curve:find("\n0.9,1,1,1\n", 1, true), "the curve ends at 1")
+  end,
+
   ["da3_bench: its own scores, thinned and not"] = function(t)
     each_case(t, function(case, estimate, reference, expected)
       local function check(scores, inputs)
