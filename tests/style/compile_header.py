@@ -6,7 +6,7 @@ usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRELUDE]
        compile_header.py --prelude COMPILER BUILD_FOLDER HEADERS PRELUDE
 
 An empty report is a header that compiles. Flags are those the tests are built with. A header whose
-library is not here is skipped. A prelude is what clang has read beforehand.
+library is not here is skipped. A prelude is what g++ has read beforehand (prelude.hpp.gch).
 """
 
 import json
@@ -34,7 +34,7 @@ def precompile(compiler, build_folder, headers, prelude):
 
 def main(compiler, build_folder, header, report, depfile, prelude=None):
     command = [compiler, *flags_of_tests(build_folder), "-fsyntax-only", "-MD", "-MF", depfile]
-    command += ["-include-pch", prelude] if prelude else []
+    command += ["-include", prelude.removesuffix(".gch")] if prelude else []
     command += ["-MT", report, "-x", "c++", "-include", header, "/dev/null"]
     run = subprocess.run(command, cwd=build_folder, capture_output=True, text=True)
     absent = ABSENT.search(run.stderr)

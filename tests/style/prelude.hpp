@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 //
-// What most public headers include, read once for clang: g++ tells that a header includes all that
-// it uses; clang, in half the time so, that it parses every header and has nothing to warn of.
+// What most public headers include, read once for g++: clang tells that a header includes all that
+// it uses; g++, in half the time so, that it parses every header and has nothing to warn of.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
