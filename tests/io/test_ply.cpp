@@ -3,6 +3,7 @@
 #include <aib/io/bytes.hpp>
 #include <aib/io/cloud.hpp>
 #include <aib/io/mesh.hpp>
+#include <aib/io/ply_positions.hpp>
 
 #include <doctest/doctest.h>
 
@@ -142,6 +143,42 @@ TEST_CASE("gaussian splats are refused unless their centres are asked for") {
   const auto centres = io::read_cloud(path, {.splats = io::splat_rule::centres});
   CHECK(centres.size() == 1);
   CHECK(centres.warnings.size() == 1);
+}
+
+TEST_CASE("positions come block by block as the whole cloud has them") {
+  const auto positions = [](const std::filesystem::path& path) {
+    io::ply_positions file(path);
+    std::vector<Eigen::Vector3d> all, block;
+    while (file.next(block)) all.insert(all.end(), block.begin(), block.end());
+    CHECK(all.size() == file.size());
+    return all;
+  };
+  const auto check_same = [&](const std::filesystem::path& path) {
+    const auto found = positions(path);
+    const auto cloud = io::read_ply_cloud(path);
+    REQUIRE(found.size() == cloud.size());
+    bool same = true;
+    for (std::size_t i = 0; i < found.size(); ++i) same &= found[i] == cloud.position(i);
+    CHECK(same);
+  };
+  const std::string before = "element camera 1\nproperty uchar id\n";
+  const std::string scattered =
+      "property uchar red\nproperty double z\nproperty int x\nproperty short y\n";
+  const auto row = [](double z, std::int32_t x, std::int16_t y) {
+    return bytes<std::uint8_t>({7}) + bytes({z}, std::endian::big) + bytes({x}, std::endian::big) +
+           bytes({y}, std::endian::big);
+  };
+  check_same(ply(big + before + "element vertex 2\n" + scattered,
+                 "!" + row(0.5, 3, -4) + row(-2.25, 5, 6)));
+  check_same(ply(little + "element vertex 2\n" + xyz + "property list uchar uchar of\n",
+                 bytes({1.f, 2.f, 3.f}) + "\1a" + bytes({4.f, 5.f, 6.f}) + std::string(1, '\0')));
+  std::string many;
+  for (int i = 0; i < 3 * 70'000; ++i) io::store(many, static_cast<float>(i));
+  check_same(ply(little + "element vertex 70000\n" + xyz, many));
+  CHECK(io::ply_positions(ply(little + "element vertex 0\n" + xyz, "")).size() == 0);
+  CHECK_THROWS_AS(positions(ply(little + "element vertex 70001\n" + xyz, many)), format_error);
+  CHECK_THROWS_AS(positions(ply(ascii + "element vertex 1\n" + xyz, "1 2 3")), format_error);
+  CHECK_THROWS_AS(positions(ply(little + "element face 0\nproperty uchar a\n", "")), format_error);
 }
 
 TEST_CASE("polygons of a ply become fans and carry their labels") {
