@@ -44,6 +44,14 @@ while arg[program - 1] do program = program - 1 end
 --- Path of that program.
 function M.program() return arg[program] end
 
+--- A path that holds in any folder.
+function M.absolute(path)
+  local pipe = assert(io.popen("realpath " .. M.quoted(path)))
+  local text = pipe:read "l"
+  pipe:close()
+  return text
+end
+
 --- Runs aib-lua, the program that runs this test. Returns what it printed, what it complained of, and its exit code.
 function M.aib_lua(...)
   local words = { M.quoted(arg[program]) }

@@ -114,6 +114,25 @@ return aib.test {
     t:contains(complaints, "INDEX/COUNT expected, as 3/16, found '5/4'")
   end,
 
+  ["the workflow for a cluster, with parts that are killed once, gives the bytes of one run"] = function(t)
+    if not os.execute "snakemake --version >/dev/null 2>&1" then t:skip "Snakemake is not installed" end
+    local scratch <close> = support.scratch_folder()
+    local data, _, out = copied_benchmark(scratch)
+    local whole = json_of(t, script, out, data)
+    local wrapper = scratch.path .. "/aib-lua"  -- kills the first part that it is asked for
+    aib.system.write_text(wrapper, ([[#!/bin/sh
+case "$*" in *--shard*) mkdir %s/once 2>/dev/null && exec timeout -s KILL 0.1 %s "$@";; esac
+exec %s "$@"
+]]):format(scratch.path, support.absolute(support.program()), support.absolute(support.program())))
+    assert(os.execute("chmod +x " .. wrapper))
+    local ok = os.execute(("snakemake -s %s --directory %s --cores 2 --quiet --config benchmark=%s shards=2" ..
+      " out=%s/out aib_lua=%s options='--samples 2000' >/dev/null 2>&1"):format(
+      support.quoted(support.absolute(support.root .. "/examples/cluster/Snakefile")), scratch.path, data, scratch.path,
+      wrapper))
+    t:check(ok, "the workflow ends well")
+    t:check(aib.system.read_text(scratch.path .. "/out/all.json") == whole, "the bytes are the same")
+  end,
+
   ["an unbatched method is cut into batches where that is asked for"] = function(t)
     local report = support.protocol("asset_inspection"):run {
       benchmark = support.root .. "/examples/data", samples = 2000, batch = { "COLMAP + SGBM=10" },
