@@ -7,13 +7,18 @@
 local aib = require "aib"
 local trajectories = require "aib.trajectories"
 
+--- The estimate against the whole reference where frames have names: missing frames count in colmap's convention.
+local function pair_of(estimate, convention)
+  local whole = convention == "colmap" and #estimate.ref.names > 0
+  return estimate.est, whole and estimate.reference or estimate.ref
+end
+
 local function score(estimate, input)
   local cell, est, ref = estimate.cell, estimate.est, estimate.ref
   for _, convention in ipairs(input.convention) do
-    local whole = convention == "colmap" and #est.names > 0  -- missing frames count there
     local auc, reason = cell:attempt(function()
-      return aib.pose.auc(whole and estimate.trajectory or est, whole and estimate.reference or ref,
-        { convention = convention, max_deg = input.max_deg })
+      local e, r = pair_of(estimate, convention)
+      return aib.pose.auc(e, r, { convention = convention, max_deg = input.max_deg })
     end)
     local how = { better = "higher", n = auc and auc.n_pairs, convention = convention, note = reason,
       options = { max_deg = input.max_deg } }
@@ -54,8 +59,9 @@ return aib.protocol {
   },
   run = function(input, report)
     for estimate in trajectories.each(input, report) do score(estimate, input) end
-    report:table { title = ("AUC%d"):format(input.max_deg), metrics = named("auc.", input.convention, "%s"),
-      across = { "metric" } }
+    local areas = named("auc.", input.convention, "%s")
+    areas[#areas + 1] = { "registration_rate", label = "registered" }
+    report:table { title = ("AUC%d"):format(input.max_deg), metrics = areas, across = { "metric" } }
     report:table { title = "Relative rotations", metrics = named("rra.", input.tau, "%g"), across = { "metric" } }
     report:table { title = "Relative directions", metrics = named("rta.", input.tau, "%g"), across = { "metric" } }
   end,

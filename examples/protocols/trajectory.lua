@@ -23,12 +23,17 @@ end
 local function score(estimate, input)
   local cell, ref = estimate.cell, estimate.ref
   cell:add("path_length", estimate.est:path_length(), { unit = "m", n = #estimate.est })
-  local est = trajectories.aligned(estimate, input.align)
+  local stamps = estimate.est.stamps
+  if #stamps > 0 then cell:add("duration", stamps[#stamps] - stamps[1], { unit = "s", n = #stamps }) end
+  local est = trajectories.aligned(estimate, input.align, {
+    n = input.align_n, robust = input.robust, rotation_weight = input.rotation_weight, stand_off = input.stand_off,
+    outlier_factor = input.outlier_factor > 0 and input.outlier_factor or nil,
+  })
   if not est then return end
   add_errors(cell, "ape", function() return aib.pose.ape(est, ref, { relation = input.relation }) end,
     input.relation, { align = input.align, relation = input.relation })
   local pairs_of_frames = { relation = input.relation, delta = input.delta, unit = input.unit,
-    all_pairs = input.all_pairs, tolerance = input.tolerance }
+    all_pairs = input.all_pairs, tolerance = input.tolerance, pairs_from = input.pairs_from }
   add_errors(cell, "rpe", function() return aib.pose.rpe(est, ref, pairs_of_frames) end, input.relation,
     { align = input.align, relation = input.relation, delta = input.delta, unit = input.unit,
       all_pairs = input.all_pairs })
@@ -47,15 +52,28 @@ return aib.protocol {
   help = "Absolute and relative pose errors of one or more estimates against a reference, as evo defines them.",
   inputs = trajectories.inputs {
     align = trajectories.align,
+    align_n = { kind = "integer", default = 0, min = 0, help = "align: fit to the first poses, so many; 0: all" },
+    robust = { kind = "flag", help = "align: find the poses that agree, then fit to them" },
+    outlier_factor = { kind = "number", default = 0, min = 0,
+      help = "align: leave out poses farther than this times the median distance from the median position; 0: none" },
+    rotation_weight = { kind = "number", unit = "m", default = 0, min = 0,
+      help = "align: orientations count, a radian as this length" },
+    stand_off = { kind = "number", unit = "m", default = 10, min = 0,
+      help = "align: distance at which the error of a turn is foretold" },
     relation = { kind = "choice", choices = relations, default = "translation", help = "what of a motion counts" },
     delta = { kind = "number", default = 1, help = "how far apart the poses of a relative error are" },
     unit = { kind = "choice", choices = { "frames", "m", "deg", "rad" }, default = "frames", help = "of delta" },
     all_pairs = { kind = "flag", help = "relative errors from every pose, not one pair after another" },
+    pairs_from = { kind = "choice", choices = { "estimate", "reference" }, default = "estimate",
+      help = "whose path tells which poses are a delta apart" },
     tolerance = { kind = "number", default = 0.1, min = 0, help = "all pairs: share of delta that a pair may miss" },
   },
   run = function(input, report)
     for estimate in trajectories.each(input, report) do score(estimate, input) end
     local aligned = input.align == "none" and "not aligned" or input.align .. " aligned"
+    local whole = { { "n_matched", label = "pairs" }, { "path_length", label = "path" }, "duration",
+      { "align.scale", label = "scale" } }
+    report:table { title = "Trajectories", metrics = whole, across = { "metric" } }
     report:table { title = ("APE, %s, %s"):format(input.relation, aligned), metrics = metrics_of "ape",
       across = { "metric" } }
     report:table { title = ("RPE, %s, delta %g %s"):format(input.relation, input.delta, input.unit),

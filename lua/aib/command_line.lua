@@ -85,13 +85,25 @@ function parser:common_option(key, value)
   self.call.outputs[key] = path
 end
 
-function parser:positional(value)
-  local input = self.places[math.min(self.place, #self.places)]
-  if not input or self.place > #self.places and input.kind ~= "list" then
-    wrong(("%d arguments at most expected, found '%s' beside them"):format(#self.places, value))
+--- Gives the arguments without a name to the places that no option has filled, in their order. The first list among
+--- them takes those that are more than there are places.
+function parser:fill_places()
+  local open = {}
+  for _, input in ipairs(self.places) do
+    if input.kind == "flag" or self.call.inputs[input.key] == nil then open[#open + 1] = input end
   end
-  give(self.call.inputs, input, inputs.parse(input, value, wrong))
-  self.place = self.place + 1
+  local surplus = math.max(0, #self.unnamed - #open)
+  local at = 0
+  for _, input in ipairs(open) do
+    local take = 1
+    if input.kind == "list" then take, surplus = 1 + surplus, 0 end
+    for _ = 1, take do
+      at = at + 1
+      if self.unnamed[at] then give(self.call.inputs, input, inputs.parse(input, self.unnamed[at], wrong)) end
+    end
+  end
+  if not self.unnamed[at + 1] then return end
+  wrong(("%d arguments at most expected, found '%s' beside them"):format(at, self.unnamed[at + 1]))
 end
 
 function parser:run()
@@ -101,7 +113,7 @@ function parser:run()
     local argument = self.arguments[self.at]
     local name, value = argument:match("^%-%-([^=]+)=(.*)$")
     if only_places or not argument:find("^%-.") then
-      self:positional(argument)
+      self.unnamed[#self.unnamed + 1] = argument
     elseif argument == "--" then
       only_places = true
     elseif argument == "-h" then
@@ -126,11 +138,13 @@ end
 --- { usage = sentence } where they are not understood.
 function M.parse(protocol, arguments)
   local self = setmetatable({
-    protocol = protocol, arguments = arguments, at = 0, place = 1, places = in_places(protocol),
+    protocol = protocol, arguments = arguments, at = 0, unnamed = {}, places = in_places(protocol),
     known = by_option_name(protocol), call = { inputs = {}, outputs = {} },
   }, parser)
   self:run()
-  if not self.call.help then self.call.inputs = inputs.complete(protocol.inputs, self.call.inputs, wrong) end
+  if self.call.help then return self.call end
+  self:fill_places()
+  self.call.inputs = inputs.complete(protocol.inputs, self.call.inputs, wrong)
   return self.call
 end
 

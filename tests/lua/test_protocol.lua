@@ -61,6 +61,9 @@ return aib.test {
     inputs.ref.position, inputs.est.position = 1, 2
     t:equal(values_of(inputs, { "b", "--", "--a" }), { est = "--a", ref = "b", n = 1 })
     t:equal(values_of({ files = { kind = "list", position = 1 } }, { "a", "b", "c" }), { files = { "a", "b", "c" } })
+    local several = { est = { kind = "list" }, ref = { kind = "path" } }
+    t:equal(values_of(several, { "a", "b", "c" }), { est = { "a", "b" }, ref = "c" })
+    t:equal(values_of(several, { "a", "--ref", "r", "b" }), { est = { "a", "b" }, ref = "r" })
   end,
 
   ["units of one kind are converted"] = function(t)

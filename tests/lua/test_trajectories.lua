@@ -89,7 +89,8 @@ return aib.test {
 
   ["batches are lists of frames or of names"] = function(t)
     local ref, est = ring(30), ring(30, shifted)
-    local batches, moved = aib.align.batches(est, ref, { frames = { { 20, 21, 22, 23 }, { 1, 5, 9, 13 } }, mode = "se3" })
+    local frames = { { 20, 21, 22, 23 }, { 1, 5, 9, 13 } }
+    local batches, moved = aib.align.batches(est, ref, { frames = frames, mode = "se3" })
     t:equal({ batches[1].first, batches[2].last, batches[2].frames }, { 20, 13, { 1, 5, 9, 13 } })
     t:near(aib.pose.ape(moved, ref).rmse, 0, 1e-10)
     t:equal(aib.pose.ape(moved, ref).count, 8)
@@ -140,8 +141,56 @@ return aib.test {
     local values, report = run("trajectory", {})
     t:near(values["ape.rmse"], 5, 1e-9)
     t:near(values["rpe.max"], 0, 1e-9)
-    t:equal(#report:grids(), 2)
+    t:equal(#report:grids(), 3)
     t:near(run("trajectory", { align = "se3" })["ape.max"], 0, 1e-9)
+  end,
+
+  ["trajectory: estimates whose names have no folder, one that fits nothing, axes of another kind"] = function(t)
+    local protocol = dofile(here .. "/../../examples/protocols/trajectory.lua")
+    local camera = aib.math.camera { width = 64, height = 48, parameters = { 50, 50, 32, 24 } }
+    local function model(trajectory)
+      local folder, cameras = os.tmpname(), {}
+      os.remove(folder)
+      for _, name in ipairs(trajectory.names) do cameras[name] = camera end
+      aib.io.write_trajectory(folder, trajectory, { cameras = cameras })
+      return folder
+    end
+    local function renamed(trajectory, change)
+      local poses, names = {}, {}
+      for i, name in ipairs(trajectory.names) do poses[i], names[i] = trajectory[i], change(name) end
+      return aib.pose.trajectory(poses, { names = names })
+    end
+    local estimate = model(ring(20, shifted))
+    local other = model(renamed(ring(20), function(name) return "x" .. name end))
+    local reference = model(renamed(ring(20), function(name) return "images/" .. name end))
+    local report = protocol:run { estimate = { estimate, other }, reference = reference, by = "name" }
+    local values = {}
+    for _, record in ipairs(report:records()) do
+      values[record.name] = values[record.name] or {}
+      table.insert(values[record.name], record.value)
+    end
+    t:near(values["ape.rmse"][1], 5, 1e-9)
+    t:equal(#values["ape.rmse"], 1)
+    t:equal({ values.n_matched, values.registration_rate }, { { 20, 0 }, { 1.0, 0.0 } })
+    for _, folder in ipairs { estimate, other, reference } do os.execute("rm -r '" .. folder .. "'") end
+  end,
+
+  ["pose_auc: missing frames count in colmap's convention"] = function(t)
+    local protocol = dofile(here .. "/../../examples/protocols/pose_auc.lua")
+    local estimate, reference = scratch .. ".e.json", scratch .. ".r.json"
+    local camera = aib.math.camera { width = 64, height = 48, parameters = { 50, 50, 32, 24 } }
+    local cameras = {}
+    for _, name in ipairs(ring(10).names) do cameras[name] = camera end
+    aib.io.write_trajectory(estimate, ring(10):select { 1, 2, 3, 4, 5, 6 }, { cameras = cameras })
+    aib.io.write_trajectory(reference, ring(10), { cameras = cameras })
+    local report = protocol:run { estimate = { estimate }, reference = reference, convention = { "colmap", "paper" } }
+    for _, record in ipairs(report:records()) do
+      if record.name == "auc.colmap" then t:near(record.value, 30 / 90, 1e-6) end
+      if record.name == "auc.paper" then t:equal(record.value, 1.0) end
+      if record.name == "registration_rate" then t:equal(record.value, 0.6) end
+    end
+    os.remove(estimate)
+    os.remove(reference)
   end,
 
   ["tum_rgbd: rigid alignment first"] = function(t)
