@@ -143,7 +143,8 @@ inline cloud::cloud voxel_grid::result() const {
   result.origin = placed.origin;
   result.points = std::move(placed.points);
   if (!has_colors_) return result;
-  for (const auto& [at, sum] : sorted) {
+  for (const auto& voxel : sorted) {
+    const sums& sum = voxel.second;
     const auto mean = [&](std::size_t k) {
       return static_cast<std::uint8_t>((2 * sum.color[k] + sum.n) / (2 * sum.n));
     };
