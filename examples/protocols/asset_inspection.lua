@@ -6,6 +6,8 @@
 ---
 ---   aib-lua asset_inspection examples/data --json results.json
 local aib = require "aib"
+local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 -- Poses ---------------------------------------------------------------------------------------------------------------
 
@@ -216,6 +218,13 @@ local function add_labels(cloud, truth, how, input, cell)
   end
 end
 
+--- Whether the scene has a surface that points can be held against; says so where it has none.
+local function has_surface(truth, cell)
+  if truth.reference then return true end
+  cell:note("points: the scene has neither mesh nor points")
+  return false
+end
+
 --- Adds the distances between a cloud in the frame of the truth and the true surface.
 local function add_cloud(all, truth, frame_how, input, cell)
   local cloud = aib.scene.cropped(truth, all)
@@ -321,7 +330,7 @@ local function score_batch_poses(fit, given, truth, how, input, cell)
   end
   local auc = cell:attempt(function() return aib.batches.auc(fit, { convention = input.auc }) end, "pose.auc30") or {}
   add_auc(cell, "pose.auc30", auc.all, input)
-  if #fit.parts > 1 then
+  if #fit.parts > 1 or not auc.all then
     add_auc(cell, "pose.auc30_intra", auc.intra, input)
     add_auc(cell, "pose.auc30_cross", auc.cross, input)
   end
@@ -380,6 +389,48 @@ local function name_rules(batches, truth)
   return { ignore_folder = true }
 end
 
+--- Sizes by method of --batch NAME=SIZE.
+local function batch_sizes(input)
+  local sizes = {}
+  for _, text in ipairs(input.batch) do
+    local name, size = text:match "^(.+)=(%d+)$"
+    if not name or tonumber(size) < 1 then
+      failure.usage(("--batch: METHOD=SIZE expected, found '%s'"):format(text))
+    end
+    sizes[name] = sizes[name] or {}
+    table.insert(sizes[name], math.tointeger(tonumber(size)))
+  end
+  return sizes
+end
+
+--- Raises an error of usage where --batch names no method.
+local function check_batches(input, benchmark)
+  local known = {}
+  for _, method in ipairs(benchmark.methods) do known[#known + 1] = method.name end
+  for name in pairs(batch_sizes(input)) do
+    local hint, found = suggest.hint(name, known), false
+    for _, method in ipairs(known) do found = found or method == name end
+    if not found then failure.usage(("--batch: unknown method '%s'%s"):format(name, hint)) end
+  end
+end
+
+--- An unbatched method cut into batches as a batched one has them: what its poses would score then, for each size that
+--- is asked for.
+local function score_in_batches(trajectory, method, truth, input, cell)
+  local batch = { names = trajectory.names, trajectory = trajectory, rule = "raw" }
+  for _, size in ipairs(batch_sizes(input)[method] or {}) do
+    local sub = cell:within { method = ("%s, batches of %d"):format(method, size) }
+    local how = { alignment = input.alignment, batch = size }
+    how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
+    local fit = aib.batches.align(aib.batches.split(batch, truth.names, size), truth.trajectory,
+      { outlier_factor = how.outlier_factor })
+    if #fit.parts > 0 then
+      score_batch_poses(fit, false, truth, how, input, sub)
+      report_batches(fit, how, sub)
+    end
+  end
+end
+
 local function evaluate_output(unit, truth, files, input, cell, frames)
   local method = open_method(unit, truth, files, cell)
   local given = unit.method.parameters == "ground truth"
@@ -407,33 +458,10 @@ local function evaluate_output(unit, truth, files, input, cell, frames)
     end, { better = "lower", convention = "mean over views" })
   end
   if method.batches[1].depth then score_batch_depth(fit, truth, how, input, cell, frames) end
-  score_batch_cloud(unit, fit, truth, files, how, input, cell)
-end
-
---- Sizes by method of --batch NAME=SIZE.
-local function batch_sizes(input)
-  local sizes = {}
-  for _, text in ipairs(input.batch) do
-    local name, size = text:match "^(.+)=(%d+)$"
-    if not name or tonumber(size) < 1 then
-      error(("--batch: METHOD=SIZE expected, found '%s'"):format(text), 0)
-    end
-    sizes[name] = sizes[name] or {}
-    table.insert(sizes[name], math.tointeger(tonumber(size)))
+  if has_surface(truth, cell) then score_batch_cloud(unit, fit, truth, files, how, input, cell) end
+  if #fit.parts == 1 and not given then
+    score_in_batches(fit.parts[1].batch.trajectory, unit.method.name, truth, input, cell)
   end
-  return sizes
-end
-
---- An unbatched method cut into batches as a batched one has them: what its poses would score then.
-local function score_as_batches(model, size, truth, input, cell)
-  local batch = { names = model.trajectory.names, trajectory = model.trajectory, rule = "raw" }
-  local parts = aib.batches.split(batch, truth.names, size)
-  local how = { alignment = input.alignment, batch = size }
-  how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
-  local fit = aib.batches.align(parts, truth.trajectory, { outlier_factor = how.outlier_factor })
-  if #fit.parts == 0 then return end
-  score_batch_poses(fit, false, truth, how, input, cell)
-  report_batches(fit, how, cell)
 end
 
 -- All -----------------------------------------------------------------------------------------------------------------
@@ -460,14 +488,11 @@ local function evaluate(unit, truth, files, input, cell, frames)
     cell:add("pose.auc30", nil, { better = "higher", note = "the poses are given" })
   elseif scored then
     score_models(models, truth, input, cell)
-    for _, size in ipairs(batch_sizes(input)[unit.method.name] or {}) do
-      score_as_batches(scored, size, truth, input,
-        cell:within { method = ("%s, batches of %d"):format(unit.method.name, size) })
-    end
+    score_in_batches(scored.trajectory, unit.method.name, truth, input, cell)
   end
   local frame = frame_of(unit, models, scored)
   if unit.result.depth then score_depth(unit, truth, files, frame, input, cell, frames) end
-  if unit.result.cloud then score_cloud(unit, truth, files, frame, input, cell) end
+  if unit.result.cloud and has_surface(truth, cell) then score_cloud(unit, truth, files, frame, input, cell) end
 end
 
 local function has_record(report, name)
@@ -595,6 +620,7 @@ return aib.protocol {
   },
   run = function(input, report)
     local benchmark = aib.benchmark.open(input.benchmark)
+    check_batches(input, benchmark)
     local truth
     local parts = aib.units.run {
       report = report, files = benchmark.files, units = benchmark.units,

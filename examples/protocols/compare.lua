@@ -96,11 +96,11 @@ local function place_of(metric, group) return metric .. "\0" .. aib.json.encode(
 
 --- Numbers of frames by metric and group.
 local function frames_of(result)
-  local by_place = {}
+  local found = {}
   for _, frames in ipairs(result.frames or {}) do
-    by_place[place_of(frames.metric, frames.group)] = frames
+    found[place_of(frames.metric, frames.group)] = frames
   end
-  return by_place
+  return found
 end
 
 --- Differences of the frames that both have, in the order of the first.

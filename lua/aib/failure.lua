@@ -27,4 +27,7 @@ function M.message(caught)
   return text:match("^[^\n:]+%.lua:%d+: (.*)") or text:match('^%[string "[^"\n]*"%]:%d+: (.*)') or text
 end
 
+--- Raises an error of the command line, which ends a protocol with exit code 2.
+function M.usage(text) error(setmetatable({ usage = text }, { __tostring = function() return text end }), 0) end
+
 return M

@@ -23,13 +23,13 @@ local M = {}
 
 local format_version <const> = 1
 
---- The place of a shard: "3/16" -> 3, 16; 1, 1 without. Raises an argument error.
+--- The place of a shard: "3/16" -> 3, 16; 1, 1 without. Raises an error of usage.
 function M.shard_of(text)
   if not text or text == "" then return 1, 1 end
   local index, count = text:match "^(%d+)/(%d+)$"
   index, count = tonumber(index), tonumber(count)
   if not index or index < 1 or index > count then
-    failure.raise("argument", ("shard: INDEX/COUNT expected, as 3/16, found '%s'"):format(text))
+    failure.usage(("--shard: INDEX/COUNT expected, as 3/16, found '%s'"):format(text))
   end
   return index, count
 end

@@ -110,8 +110,12 @@ return aib.test {
     t:contains(complaints, "comes twice")
     _, complaints = support.aib_lua(merge, out)
     t:contains(complaints, "a shard expected, made by --shard INDEX/COUNT")
-    _, complaints = support.aib_lua(script, data, "--shard", "5/4")
-    t:contains(complaints, "INDEX/COUNT expected, as 3/16, found '5/4'")
+    for _, words in ipairs { { "--shard", "5/4" }, { "--batch", "COLMAP" }, { "--batch", "COLMAP=0" } } do
+      _, complaints, code = support.aib_lua(script, data, table.unpack(words))
+      t:equal(code, 2)
+      t:contains(complaints, words[1] .. ": ")
+      t:contains(complaints, ("found '%s' (see --help)"):format(words[2]))
+    end
   end,
 
   ["the workflow for a cluster, with parts that are killed once, gives the bytes of one run"] = function(t)

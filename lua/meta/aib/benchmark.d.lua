@@ -21,6 +21,11 @@ local benchmark = {}
 ---@field models? string  # folder of COLMAP or GLOMAP models
 ---@field poses? string  # or a trajectory with image names
 ---@field cameras? string|table
+---@field output? string  # instead of models and poses: folder of what a method left, see `aib.method.open`
+---@field kind? string  # of the output, where its content is not to tell it
+---@field names? string[]|string  # of the output's frames
+---@field layout? aib.method.Layout  # of the output
+---@field confidence? number  # points of the output's depth maps are kept above it
 ---@field depth? string  # pattern
 ---@field cloud? string  # point cloud; "model": the sparse points of the scored model
 ---@field frame? "method"|"reference"  # of cloud and depth; default: that of the parameters
