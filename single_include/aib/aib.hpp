@@ -21052,6 +21052,143 @@ inline cloud::cloud voxel(const cloud::cloud& points, const voxel_options& optio
 
 }  // namespace aib::sample
 
+// aib/sample/voxel_grid.hpp
+
+namespace aib::sample {
+
+/// Voxels that clouds are added to, one after another: a scene of thousands of depth maps becomes
+/// one cloud in memory that grows with its voxels, not with its points.
+///
+/// A voxel stands for its points by their mean position and mean colour; normals and labels are
+/// left out. Lattice at the origin of the world.
+class voxel_grid {
+ public:
+  /// Only size and threads of the options are used. Throws argument_error if size is not positive.
+  explicit voxel_grid(const voxel_options& options);
+
+  /// Points that are not finite are left out. The same for any number of threads. Throws
+  /// argument_error if the size is far too small for the cloud.
+  void add(const cloud::cloud& points);
+
+  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+  [[nodiscard]] std::uint64_t n_points() const { return n_points_; }  ///< added, finite
+
+  /// One point for each voxel, in the order of the lattice; with colours if all clouds had them.
+  [[nodiscard]] cloud::cloud result() const;
+
+ private:
+  /// Cell of the world: z, y, x.
+  using cell = std::array<std::int64_t, 3>;
+  struct cell_hash {
+    std::size_t operator()(const cell& c) const {
+      std::uint64_t h = 0;
+      for (const std::int64_t k : c) {
+        h = (h ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+      }
+      return static_cast<std::size_t>(h);
+    }
+  };
+  /// Sums of the points of a voxel; offsets are from its corner, so that no digits are lost.
+  struct sums {
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    std::array<std::uint64_t, 3> color = {};
+    std::uint64_t n = 0;
+
+    sums& operator+=(const sums& other);
+  };
+
+  [[nodiscard]] cell cell_of(const Eigen::Vector3d& p) const;
+  [[nodiscard]] Eigen::Vector3d corner_of(const cell& c) const;
+  [[nodiscard]] sums sum_of(const cloud::cloud& points, std::span<const std::uint64_t> index) const;
+
+  voxel_options options_;
+  std::unordered_map<cell, sums, cell_hash> voxels_;
+  std::uint64_t n_points_ = 0;
+  bool has_colors_ = true;
+};
+
+inline voxel_grid::voxel_grid(const voxel_options& options)
+    : options_{.size = options.size, .threads = options.threads} {
+  if (!(options.size > 0 && std::isfinite(options.size)))
+    throw argument_error(message("sample::voxel_grid: size > 0 expected, found ", options.size));
+  if (options_.threads == 0) options_.threads = available_threads();
+}
+
+inline voxel_grid::sums& voxel_grid::sums::operator+=(const sums& other) {
+  offset += other.offset;
+  for (std::size_t k = 0; k < 3; ++k) color[k] += other.color[k];
+  n += other.n;
+  return *this;
+}
+
+inline voxel_grid::cell voxel_grid::cell_of(const Eigen::Vector3d& p) const {
+  const auto at = [&](double x) {
+    return static_cast<std::int64_t>(std::floor(x / options_.size));
+  };
+  return {at(p.z()), at(p.y()), at(p.x())};
+}
+
+inline Eigen::Vector3d voxel_grid::corner_of(const cell& c) const {
+  return Eigen::Vector3d(static_cast<double>(c[2]), static_cast<double>(c[1]),
+                         static_cast<double>(c[0])) *
+         options_.size;
+}
+
+inline voxel_grid::sums voxel_grid::sum_of(const cloud::cloud& points,
+                                           std::span<const std::uint64_t> index) const {
+  sums total;
+  const Eigen::Vector3d corner = corner_of(cell_of(points.position(index.front())));
+  for (const std::uint64_t i : index) {
+    total.offset += points.position(i) - corner;
+    if (points.colors.empty()) continue;
+    for (std::size_t k = 0; k < 3; ++k) total.color[k] += points.colors[i][k];
+  }
+  total.n = index.size();
+  return total;
+}
+
+inline void voxel_grid::add(const cloud::cloud& points) {
+  if (points.size() == 0) return;
+  const detail::voxel_lattice lattice(points, options_);
+  const auto sorted = detail::sort_by_cell(points, lattice, options_.threads);
+  const auto starts = detail::voxel_starts(sorted, lattice);
+  const std::size_t n = starts.size() - 1;
+  std::vector<sums> parts(n);
+  for_each_chunk(n, 4096, options_.threads, {}, [&](const chunk& c) {
+    for (std::size_t v = c.begin; v < c.end; ++v)
+      parts[v] = sum_of(points, sorted.span().subspan(starts[v], starts[v + 1] - starts[v]));
+  });
+  for (std::size_t v = 0; v < n; ++v)
+    voxels_[cell_of(points.position(sorted[starts[v]]))] += parts[v];
+  n_points_ += sorted.size();
+  has_colors_ = has_colors_ && !points.colors.empty();
+}
+
+inline cloud::cloud voxel_grid::result() const {
+  std::vector<std::pair<cell, sums>> sorted(voxels_.begin(), voxels_.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  cloud::placed_points placed = cloud::place(sorted.size(), [&](std::size_t v) -> Eigen::Vector3d {
+    const auto& [at, sum] = sorted[v];
+    return corner_of(at) + sum.offset / static_cast<double>(sum.n);
+  });
+  cloud::cloud result;
+  result.origin = placed.origin;
+  result.points = std::move(placed.points);
+  if (!has_colors_) return result;
+  for (const auto& voxel : sorted) {
+    const sums& sum = voxel.second;
+    const auto mean = [&](std::size_t k) {
+      return static_cast<std::uint8_t>((2 * sum.color[k] + sum.n) / (2 * sum.n));
+    };
+    result.colors.push_back({mean(0), mean(1), mean(2)});
+  }
+  return result;
+}
+
+}  // namespace aib::sample
+
 // aib/stats/bootstrap.hpp
 
 namespace aib::stats {
@@ -21580,15 +21717,23 @@ class search_pass {
   void visit(tile& target, std::span<const Eigen::Vector3f> queries, std::vector<float>& best) {
     std::vector<std::uint32_t> asked;
     std::vector<Eigen::Vector3f> asking;
+    float_box box;
+    float farthest = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       if (!(target.box.squared_distance(triple(queries[i])) < best[i])) continue;
       asked.push_back(static_cast<std::uint32_t>(i));
       asking.push_back(queries[i]);
+      box.add(triple(queries[i]));
+      farthest = std::max(farthest, best[i]);
     }
     if (asked.empty()) return;
     std::vector<Eigen::Vector3f> points;
-    for (std::uint64_t first = 0; first < target.points.size(); first += points.size()) {
+    for (std::uint64_t first = 0; first < target.points.size(); first += slice_) {
       read(target, first, slice_, points);
+      std::erase_if(points, [&](const Eigen::Vector3f& p) {
+        return !(box.squared_distance(triple(p)) < farthest);  // nearer to none
+      });
+      if (points.empty()) continue;
       const auto found = search(asking, points);
       for (std::size_t i = 0; i < asked.size(); ++i)
         best[asked[i]] = std::min(best[asked[i]], found[i]);
@@ -21734,7 +21879,7 @@ inline void demand_points(const tiled_cloud& c, const char* which, const cloud_f
   for (const double tau : c.tau) cloud::detail::check_tau(tau, how);
   const cloud_file e = open_cloud(estimate, c.control), r = open_cloud(reference, c.control);
   const auto slice = static_cast<std::size_t>(options.memory / 2 / tiles::bytes_a_point);
-  const auto needed = static_cast<int>(std::bit_width((e.size + r.size) / slice));
+  const auto needed = static_cast<int>(std::bit_width(std::max(e.size, r.size) / slice));
   std::vector<point> sample;
   constexpr std::uint64_t sampled = 100'000;
   add_sample(e, r.origin, sampled, c.control, sample);

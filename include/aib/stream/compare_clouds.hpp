@@ -84,15 +84,23 @@ class search_pass {
   void visit(tile& target, std::span<const Eigen::Vector3f> queries, std::vector<float>& best) {
     std::vector<std::uint32_t> asked;
     std::vector<Eigen::Vector3f> asking;
+    float_box box;
+    float farthest = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       if (!(target.box.squared_distance(triple(queries[i])) < best[i])) continue;
       asked.push_back(static_cast<std::uint32_t>(i));
       asking.push_back(queries[i]);
+      box.add(triple(queries[i]));
+      farthest = std::max(farthest, best[i]);
     }
     if (asked.empty()) return;
     std::vector<Eigen::Vector3f> points;
-    for (std::uint64_t first = 0; first < target.points.size(); first += points.size()) {
+    for (std::uint64_t first = 0; first < target.points.size(); first += slice_) {
       read(target, first, slice_, points);
+      std::erase_if(points, [&](const Eigen::Vector3f& p) {
+        return !(box.squared_distance(triple(p)) < farthest);  // nearer to none
+      });
+      if (points.empty()) continue;
       const auto found = search(asking, points);
       for (std::size_t i = 0; i < asked.size(); ++i)
         best[asked[i]] = std::min(best[asked[i]], found[i]);
@@ -238,7 +246,7 @@ inline void demand_points(const tiled_cloud& c, const char* which, const cloud_f
   for (const double tau : c.tau) cloud::detail::check_tau(tau, how);
   const cloud_file e = open_cloud(estimate, c.control), r = open_cloud(reference, c.control);
   const auto slice = static_cast<std::size_t>(options.memory / 2 / tiles::bytes_a_point);
-  const auto needed = static_cast<int>(std::bit_width((e.size + r.size) / slice));
+  const auto needed = static_cast<int>(std::bit_width(std::max(e.size, r.size) / slice));
   std::vector<point> sample;
   constexpr std::uint64_t sampled = 100'000;
   add_sample(e, r.origin, sampled, c.control, sample);
