@@ -69,6 +69,11 @@ end
 local function near_auc(t, found, expected, what)
   t:near(found.auc, expected.auc30_paper_min_signed, 2 / (30 * expected.n_pairs) + 1e-12, what)
   t:equal(found.n_pairs, expected.n_pairs, what .. " pairs")
+  for tau, share in pairs(found.rra and expected.rra or {}) do
+    local slack = 2 / expected.n_pairs + 1e-12
+    t:near(found.rra[tonumber(tau)], share, slack, what .. " rra " .. tau)
+    t:near(found.rta[tonumber(tau)], expected.rta_signed[tau], slack, what .. " rta " .. tau)
+  end
 end
 
 --- Compares a transform. The nearer the positions are to a line, the more the rounding of the files turns it.
@@ -245,6 +250,16 @@ return aib.test {
       if is_given(expected.pose_intra_pooled) then
         near_auc(t, found.intra, expected.pose_intra_pooled, set .. " intra")
       end
+      for k, of_batch in ipairs(expected.batches) do
+        local places = {}
+        for i, place in ipairs(fit.batch) do
+          if place == k then places[#places + 1] = i end
+        end
+        if #places > 1 then
+          near_auc(t, aib.pose.auc(fit.est:select(places), fit.ref:select(places)), of_batch.pose_intra,
+            ("%s %s"):format(set, of_batch.batch))
+        end
+      end
       if is_given(expected.pose_cross_pooled) then
         near_auc(t, found.cross, expected.pose_cross_pooled, set .. " cross")
       end
@@ -260,6 +275,12 @@ return aib.test {
       local cameras = aib.batches.cameras(case.method.batches)
       local expected = case.expected.focal_mre_mean_fx_fy
       t:equal(cameras ~= nil, is_given(expected), set)
+      for k, batch in ipairs(case.method.batches) do
+        local of_batch = case.expected.batches[k].focal_mre_mean_fx_fy
+        if batch.cameras and is_given(of_batch) then
+          near(t, aib.pose.focal_error(batch.cameras, case.truth.cameras).mre, of_batch, 1e-6, set .. " " .. batch.name)
+        end
+      end
       if cameras then
         near(t, aib.pose.focal_error(cameras, case.truth.cameras, { over = "views" }).mre, expected, 1e-6, set)
       end
@@ -270,7 +291,8 @@ return aib.test {
     each(t, function(case, set)
       for _, rule in ipairs { "centre", "floor" } do
         local sum, n = 0, 0
-        for _, batch in ipairs(case.method.batches) do
+        for k, batch in ipairs(case.method.batches) do
+          local before = sum
           for i, name in ipairs(batch.names) do
             local est <close> = batch.depth(i)
             local stem = name:match "^(.*)%."
@@ -283,6 +305,7 @@ return aib.test {
             t:equal(found.n_reference, expected[5], what)
             sum, n = sum + found.srmse, n + 1
           end
+          near(t, (sum - before) / #batch.names, case.expected.batches[k].depth[rule].mean_sq, 1e-6, set)
         end
         near(t, sum / n, case.expected.depth[rule].mean_sq, 1e-6, set)
       end
@@ -308,5 +331,33 @@ return aib.test {
       est = aib.pose.trajectory(poses, { names = names })
       t:equal(aib.method.poses_are_given(est, case.truth.trajectory), set:find "gtposes" ~= nil, set)
     end)
+  end,
+
+  ["batches of COLMAP models with missing frames and outliers are the recorded ones"] = function(t)
+    local golden = support.shared .. "/golden/e2e/"
+    if not aib.system.is_file(golden .. "expected_batches.json") then t:skip "the shared folder is not here" end
+    local expected = aib.json.decode(aib.system.read_text(golden .. "expected_batches.json")).expected
+    local batches = {}
+    for i = 1, #expected.batches do
+      batches[i] = aib.method.open(("%sbatches_est_%d"):format(golden, i - 1)).batches[1]
+    end
+    local truth = aib.io.read_trajectory(golden .. "batches_gt")
+    local fit = aib.batches.align(batches, truth, { outlier_factor = 3 })
+    for i, of_batch in ipairs(expected.batches) do
+      local part, what = fit.parts[i], "batch " .. i
+      t:equal(#part.est, of_batch.registered, what)
+      t:equal(part.alignment.n_inliers, of_batch.registered - #of_batch.removed, what)
+      near(t, part.alignment.transform.scale, of_batch.sim3_after_removal.s, 1e-8, what)
+      near(t, part.alignment.rmse, of_batch.ate_rmse_kept, 1e-7, what)
+      local auc = aib.pose.auc(part.est, part.ref)
+      t:near(auc.auc, of_batch.auc_within_batch_all_registered.PAPER_AUC30_mean, 1e-12, what)
+    end
+    local kept = fit.moved
+    t:equal(#kept.kept, expected.overall.kept_after_outlier_removal)
+    local auc = aib.pose.auc(kept.est:select(kept.kept), kept.ref:select(kept.kept))
+    t:near(auc.auc, expected.overall.auc_all_batches_aligned_kept.PAPER_AUC30_mean, 1e-12)
+    t:equal(auc.n_pairs, expected.overall.auc_all_batches_aligned_kept.pairs)
+    local registration = aib.pose.registration_rate(fit.est, truth)
+    near(t, registration.rate, expected.overall.registration_rate, 1e-15)
   end,
 }
