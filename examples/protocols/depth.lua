@@ -70,7 +70,7 @@ return aib.protocol {
     local frames = depth_frames.pair(input)
     local options = depth_frames.reading(input, { align = input.align, align_over = input.align_over,
       min = input.min_depth, max = input.max_depth > 0 and input.max_depth or nil })
-    local errors = aib.depth.evaluate(frames, options)
+    local errors = depth_frames.evaluate(frames, options)
     local result = add_errors(errors, input, report)
     depth_frames.report_frames(frames, result, report)
     for _, label in ipairs(errors:labels()) do

@@ -30,7 +30,7 @@ return aib.protocol {
     input.estimate_scale = steps(frames, "estimate", input.estimate_scale)
     input.reference_scale = steps(frames, "reference", input.reference_scale)
     local options = depth_frames.reading(input, { preset = "kitti" })
-    local errors = aib.depth.evaluate(frames, options)
+    local errors = depth_frames.evaluate(frames, options)
     local result = report:attempt(function() return errors:result() end, "depth")
     depth_frames.report(result, report, { metrics = metrics, factors = factors, n = result and result.n_defined,
       convention = "KITTI, mean over frames" })

@@ -37,7 +37,7 @@ local function score(folders, input, report)
   local cell = folders.name and report:within { sequence = folders.name } or report
   local frames = depth_frames.pair(folders)
   local options = depth_frames.reading(input, { preset = "cut3r", align = fits[input.align], max = input.max_depth })
-  local errors = cell:attempt(function() return aib.depth.evaluate(frames, options) end, "depth")
+  local errors = cell:attempt(function() return depth_frames.evaluate(frames, options) end, "depth")
   local result = errors and cell:attempt(function() return errors:result { pooled = true } end, "depth")
   local how = { metrics = metrics, n = result and result.n_valid, convention = "CUT3R, all pixels of a sequence",
     options = { align = input.align, max_depth = input.max_depth } }

@@ -105,6 +105,24 @@ function M.reading(input, own)
   return options
 end
 
+local batch_size <const> = 32
+
+--- aib.depth.evaluate with progress. Frames are scored in batches, which merge to the bits of one run, unless one fit is
+--- over all of them.
+function M.evaluate(frames, options)
+  local one_fit = options.align_over == "sequence" or options.preset == "cut3r"
+  if one_fit then return aib.depth.evaluate(frames, options) end
+  local progress <close> = aib.progress(#frames, "frames")
+  local errors
+  for first = 1, #frames, batch_size do
+    local last = math.min(first + batch_size - 1, #frames)
+    for i = first, last do progress:step(frames[i].name) end
+    local part = aib.depth.evaluate(table.move(frames, first, last, 1, {}), options)
+    errors = errors and errors:merge(part) or part
+  end
+  return errors
+end
+
 --- Adds errors to a report.
 --- `how` = { metrics = names, n =, convention =, options =, factors = { name = { 100, "%" } } }.
 function M.report(errors, report, how)

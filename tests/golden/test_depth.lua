@@ -230,4 +230,18 @@ return aib.test {
     t:check(share > 0.1 and share <= 0.5, "kept " .. share)
     t:check(surest["fuse.points"] < values["fuse.points"])
   end,
+
+  ["batches of frames merge to the bits of one run"] = function(t)
+    local depth_frames = require "aib.depth_frames"
+    local data = support.root .. "/examples/data/"
+    local frames = depth_frames.pair { estimate = data .. "methods/sgbm_gtposes/office_high/depth",
+      reference = data .. "gt/office/depth" }
+    for i = 1, 32 do frames[#frames + 1] = frames[i] end
+    local options = { align = "median" }
+    local batches, one = depth_frames.evaluate(frames, options), aib.depth.evaluate(frames, options)
+    t:equal(#batches, 48)
+    t:equal(batches:result(), one:result())
+    t:equal(batches:result { pooled = true }, one:result { pooled = true })
+    t:equal(batches:frames()[48].name, one:frames()[48].name)
+  end,
 }

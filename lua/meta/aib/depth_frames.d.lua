@@ -29,6 +29,12 @@ function depth_frames.files_in(folder, pattern) end
 ---@return table options
 function depth_frames.reading(input, own) end
 
+---`aib.depth.evaluate` with progress.
+---@param frames aib.DepthFrameFiles[]
+---@param options table  # as `reading` gives them
+---@return aib.Accumulator errors
+function depth_frames.evaluate(frames, options) end
+
 ---Adds errors to a report; nil: dashes. `factors` turns numbers into other units: { abs_rel = { 100, "%" } }.
 ---@param errors aib.DepthErrors|nil
 ---@param report aib.Report
