@@ -107,8 +107,8 @@ end
 
 local batch_size <const> = 32
 
---- aib.depth.evaluate with progress. Frames are scored in batches, which merge to the bits of one run, unless one fit is
---- over all of them.
+--- aib.depth.evaluate with progress. Frames are scored in batches, which merge to the bits of one run, unless one fit
+--- is over all of them.
 function M.evaluate(frames, options)
   local one_fit = options.align_over == "sequence" or options.preset == "cut3r"
   if one_fit then return aib.depth.evaluate(frames, options) end
