@@ -8,7 +8,8 @@
 ---   aib-lua merge a.json b.json --json all.json
 local aib = require "aib"
 
-local here <const> = debug.getinfo(1, "S").source:match "^@(.*)/[^/]*$" or "."
+--- Folder of this script; a sandbox does not tell it, but there a script is called by its path.
+local here <const> = (debug.getinfo and debug.getinfo(1, "S").source:sub(2) or arg[0]):match "^(.*)/[^/]*$" or "."
 
 --- The protocol that made a shard, from beside this one.
 local function protocol_of(result, path)
