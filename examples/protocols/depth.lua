@@ -16,7 +16,7 @@ local function label_names(list)
   local names = {}
   for _, text in ipairs(list) do
     local number, name = text:match("^(%d+)=(.+)$")
-    if not number then failure.raise("argument", ("--label-names: NUMBER=NAME expected, found '%s'"):format(text)) end
+    if not number then failure.usage(("--label-names: NUMBER=NAME expected, found '%s'"):format(text)) end
     names[math.tointeger(tonumber(number))] = name
   end
   return names

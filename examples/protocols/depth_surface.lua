@@ -35,6 +35,7 @@ local function camera_finder(input)
         parameters = { input.focal, input.focal, width / 2, height / 2 } }
     end
   end
+  if input.cameras == "" then failure.usage("--cameras or --focal expected") end
   local cameras = aib.io.read_cameras(input.cameras)
   local by_stem, only, count = {}, nil, 0
   for image, camera in pairs(cameras) do

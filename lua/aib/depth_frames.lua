@@ -49,7 +49,7 @@ local function name_in(pattern, file)
     return extensions[extension] and stem
   end
   local before, after = pattern:match("^([^*]*)%*([^*]*)$")
-  if not before then failure.raise("argument", ("pattern '%s': one * expected"):format(pattern)) end
+  if not before then failure.usage(("pattern '%s': one * expected"):format(pattern)) end
   local fits = #file > #before + #after and file:sub(1, #before) == before and file:sub(-#after - 1, -1):sub(2) == after
   return fits and file:sub(#before + 1, #file - #after) or nil
 end
