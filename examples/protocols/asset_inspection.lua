@@ -277,7 +277,8 @@ end
 --- What the method left, with names.
 local function open_method(unit, truth, files, cell)
   local result = unit.result
-  local how = { kind = result.kind, layout = result.layout, names = result.names }
+  local how = { kind = result.kind, layout = result.layout, names = result.names,
+    confidence = result.confidence_rule }
   local folder = files:whole_folder(result.output)
   local method = aib.method.open(folder, how)
   local names = not how.names and name_frames(method, truth, cell)

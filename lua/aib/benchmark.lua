@@ -12,8 +12,9 @@
 ---     poses       trajectory with image names, any format that aib.io.read_trajectory reads
 ---     cameras     cameras file or folder, where the poses bring none
 ---     depth       pattern of depth maps, {stem} and {name} stand for the image
----     output      instead of models and poses: folder of what a method left, see aib.method; with kind, names, layout
----                 and confidence (points of depth maps are kept above it) where the content does not tell
+---     output      instead of models and poses: folder of what a method left, see aib.method; kind, names, layout
+---                 where the content does not tell; confidence (points of depth maps are kept above it) and
+---                 confidence_rule ("raw", "sigmoid", "percentile": that share of a batch is left out)
 ---     cloud       point cloud; "model": the sparse points of the scored model
 ---     frame       "method" | "reference": the frame of cloud and depth (default: that of the parameters)
 ---     model       name of the sub-model whose frame it is (default: the scored one)
@@ -37,9 +38,10 @@ local method_fields <const> = { name = "string", parameters = "string", results 
 local result_fields <const> = {
   scene = "string", condition = "string", models = "string", poses = "string", cameras = "any", depth = "string",
   cloud = "string", frame = "string", model = "string", output = "string", kind = "string", names = "any",
-  layout = "table", confidence = "number",
+  layout = "table", confidence = "number", confidence_rule = "string",
 }
 local parameters <const> = { estimated = true, ["ground truth"] = true }
+local rules <const> = { raw = true, sigmoid = true, percentile = true }
 local frames <const> = { method = true, reference = true }
 
 --- Runs a Lua data file without globals. Raises a format error where it is not one.
@@ -90,6 +92,7 @@ local function check_result(result, scenes, fail)
   elseif result.condition then
     fail(("condition: scene '%s' has none"):format(result.scene))
   end
+  if result.confidence_rule then check_name(result.confidence_rule, rules, "confidence_rule", fail) end
   if result.frame then check_name(result.frame, frames, "frame", fail) end
   if result.models and result.poses then fail("models or poses expected, found both") end
   if result.output and (result.models or result.poses) then fail("output or models and poses expected, found both") end

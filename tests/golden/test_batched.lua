@@ -155,6 +155,8 @@ local function protocol_records()
     methods[#methods + 1] = ([[{ name = "%s", parameters = "estimated", results = { %s } }]]):format(method,
       table.concat(results, ", "))
   end
+  methods[#methods + 1] = [[{ name = "da3 percentile", parameters = "estimated", results = {
+    { scene = "crane", output = "methods/da3/crane", confidence = 0.4, confidence_rule = "percentile" } } }]]
   aib.system.write_text(folder.path .. "/benchmark.lua", ("return { scenes = { %s }, methods = { %s } }"):format(
     table.concat(scenes, ", "), table.concat(methods, ", ")))
   local found = {}
@@ -184,6 +186,9 @@ return aib.test {
       near_auc(t, { auc = value(set, "pose.auc30"), n_pairs = expected.pose_all_pairs.n_pairs },
         expected.pose_all_pairs, set)
     end
+    local percentile = expected_of("da3/crane").cloud.percentile40_per_batch
+    near(t, value("da3 percentile/crane", "cloud.chamfer"), percentile.chamfer_sum, 1e-5)
+    t:equal(found["crane/da3 percentile//cloud.accuracy"].n, percentile.n_points)
     t:equal(value("da3_gtposes/crane", "pose.auc30"), nil)
     t:contains(notes, "its poses are the true ones, though the parameters are called estimated")
     near(t, value("da3_gtposes/crane", "depth.srmse"), expected_of("da3_gtposes/crane").depth.centre.mean_sq, 1e-6)

@@ -26,6 +26,7 @@ local benchmark = {}
 ---@field names? string[]|string  # of the output's frames
 ---@field layout? aib.method.Layout  # of the output
 ---@field confidence? number  # points of the output's depth maps are kept above it
+---@field confidence_rule? "raw"|"sigmoid"|"percentile"  # what its confidences are; the method's own
 ---@field depth? string  # pattern
 ---@field cloud? string  # point cloud; "model": the sparse points of the scored model
 ---@field frame? "method"|"reference"  # of cloud and depth; default: that of the parameters
