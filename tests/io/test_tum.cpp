@@ -42,6 +42,11 @@ TEST_CASE("a TUM line is stamp, position and quaternion with w last") {
   CHECK((pose.rotation.col(0) - Eigen::Vector3d::UnitY()).norm() < 1e-15);
 }
 
+TEST_CASE("a quaternion and its negative are one rotation") {
+  const auto t = read("0 1 2 3 0.1 -0.2 0.3 0.9\n1 1 2 3 -0.1 0.2 -0.3 -0.9\n");
+  CHECK((t.world_from_camera[0].rotation - t.world_from_camera[1].rotation).norm() < 1e-15);
+}
+
 TEST_CASE("a TUM file is read with w first where told so") {
   const auto t = read("0 1 2 3 0.7071067811865476 0 0 0.7071067811865476\n",
                       {.quaternion = io::quaternion_order::wxyz});
