@@ -47,6 +47,7 @@ cmake                program cmake
 colmap               program colmap
 valgrind             program valgrind
 doxygen              program doxygen
+snakemake            program snakemake
 python3-matplotlib   python matplotlib
 '
 

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-
 #include <doctest/doctest.h>
 
 #include <algorithm>

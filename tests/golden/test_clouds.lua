@@ -16,7 +16,7 @@ end
 
 --- Calls check(case, estimate, reference, expected) for each golden case.
 local function each_case(t, check)
-  if not support.has_shared() then return t:skip("no expected numbers beside the sources") end
+  if not support.has_shared() then return t:skip("the shared folder is not here") end
   local n = 0
   for _, file in ipairs(aib.system.names_in(golden)) do
     local case = file:match("^expected_(.*)%.json$")
@@ -55,7 +55,7 @@ return aib.test {
   end,
 
   ["reconstruction: against a mesh, with an ICP and normals"] = function(t)
-    if not support.has_shared() then return t:skip("no expected numbers beside the sources") end
+    if not support.has_shared() then return t:skip("the shared folder is not here") end
     local mesh = support.shared .. "/golden/mesh/knot.ply"
     local scratch <close> = support.scratch_folder()
     local points = aib.sample.mesh(aib.io.read_mesh(mesh), { n = 5000, seed = 3 })
@@ -154,7 +154,7 @@ end_header
   end,
 
   ["tanks_and_temples: trajectories and three rounds find a moved and scaled cloud, errors are written"] = function(t)
-    if not support.has_shared() then return t:skip("no expected numbers beside the sources") end
+    if not support.has_shared() then return t:skip("the shared folder is not here") end
     local scratch <close> = support.scratch_folder()
     local truth = aib.io.read_cloud(golden .. "bunny_moved_gt.ply")
     local est_from_ref = aib.math.sim3 { scale = 2, rotation = { { 0, -1, 0 }, { 1, 0, 0 }, { 0, 0, 1 } },

@@ -28,7 +28,8 @@ return aib.test {
   end,
 
   ["every component of an OpenSfM reconstruction can be read"] = function(t)
-    local component <const> = [[{"cameras": {"c": {"projection_type": "perspective", "width": 64, "height": 48, "focal": 1}},
+    local component <const> = [[{
+      "cameras": {"c": {"projection_type": "perspective", "width": 64, "height": 48, "focal": 1}},
       "shots": {"%s": {"camera": "c", "rotation": [0, 0, 0], "translation": [1, 2, 3]}}}]]
     local path <close> = folder_with {
       ["reconstruction.json"] = ("[" .. component .. "," .. component .. "]"):format("a.jpg", "b.jpg"),

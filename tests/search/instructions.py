@@ -24,7 +24,7 @@ def run(program, what):
 
 def main(program):
     if shutil.which("valgrind") is None:
-        print("skipped: no valgrind")
+        print("SKIPPED: instructions: valgrind is not installed")
         return 77
     nothing, _ = run(program, "none")
     ours, our_sum = run(program, "aib")
