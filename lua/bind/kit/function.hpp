@@ -37,8 +37,9 @@ template <class P>
 struct parameter {
   using type = std::remove_cvref_t<P>;
   decltype(value<type>::get(nullptr, 0)) from_lua;
-  static_assert(std::is_reference_v<P> || !std::is_reference_v<decltype(from_lua)>,
-                "by value it would be moved out of the object that Lua keeps: take it by reference");
+  static_assert(
+      std::is_reference_v<P> || !std::is_reference_v<decltype(from_lua)>,
+      "by value it would be moved out of the object that Lua keeps: take it by reference");
 
   parameter(lua_State* state, const signature& s, int index)
       : from_lua(checked<type>(state, index, at(s, index))) {}
