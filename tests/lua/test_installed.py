@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
 """What `meson install` lays down works where it lies: test_installed.py BUILD_FOLDER"""
+import json
 import pathlib
 import re
 import subprocess
@@ -46,6 +47,13 @@ class Installed(unittest.TestCase):
         manual = page.read_text().replace("\\-", "-")
         for option in re.findall(r"(?<=[ ,])--?[a-zA-Z]+", output_of(self.program, "--help")):
             self.assertRegex(manual, rf"(?m){option}\b", option)
+
+    def test_the_bill_of_materials_has_what_was_linked(self):
+        document = json.loads((self.share / "aib" / "aib-lua.spdx.json").read_text())
+        names = {package["name"] for package in document["packages"]}
+        self.assertLessEqual({"aib-lua", "eigen3", "lua", "nanoflann", "sol2"}, names)
+        for package in document["packages"]:
+            self.assertRegex(package["versionInfo"], r"^\d", package["name"])
 
     def test_protocols_are_completed(self):
         self.assertIn("asset_inspection", self.complete("asset_"))
