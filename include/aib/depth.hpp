@@ -7,6 +7,7 @@
 
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/boundary.hpp>
+#include <aib/depth/boundary_errors.hpp>
 #include <aib/depth/crop.hpp>
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/error_image.hpp>

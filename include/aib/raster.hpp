@@ -5,6 +5,7 @@
 /// @file
 /// Images and views of images.
 
+#include <aib/raster/canny.hpp>
 #include <aib/raster/color.hpp>
 #include <aib/raster/colormap.hpp>
 #include <aib/raster/downsample.hpp>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/depth/boundary.hpp>
+#include <aib/depth/boundary_errors.hpp>
 #include <aib/depth/depth_map.hpp>
 #include <aib/depth/normals.hpp>
 #include <aib/depth/planes.hpp>
@@ -11,6 +12,7 @@
 #include <aib/math/camera.hpp>
 
 #include "depth.hpp"
+#include <algorithm>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -176,6 +178,23 @@ void bind_depth_surface(lua_State* state) {
                   how.n = o.count("n", how.n);
                   o.done();
                   return depth::boundary_f1(estimate.values.view(), reference.values.view(), how);
+                })
+      .function("edges", {"depth"},
+                [](const depth_map& map) {
+                  const auto edges = depth::depth_edges(map.values.view());
+                  raster::label_image labels(edges.width(), edges.height());
+                  std::copy(edges.begin(), edges.end(), labels.begin());
+                  return labels;
+                })
+      .function("boundary_errors", {"estimate", "edges"},
+                [](lua_State* l, const depth_map& estimate, const raster::label_image& edges) {
+                  const auto mask = raster::mask_of(edges);
+                  const auto found = depth::boundary_error(estimate.values.view(), mask.view());
+                  return record(l)
+                      .set("accuracy", found.accuracy)
+                      .set("completeness", found.completeness)
+                      .set("n_estimate", found.n_estimate)
+                      .set("n_reference", found.n_reference);
                 });
 }
 

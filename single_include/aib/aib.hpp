@@ -6368,6 +6368,278 @@ inline double boundary_f1(raster::view<const float> estimate,
 
 }  // namespace aib::depth
 
+// aib/raster/canny.hpp
+
+namespace aib::raster {
+
+struct canny_options {
+  double sigma = 1;   ///< of the Gaussian, pixels; cut off at four of them
+  double low = 0.1;   ///< Sobel gradients (8 times the slope) from here on continue an edge
+  double high = 0.2;  ///< and from here on begin one
+};
+
+/// Edges of a picture, one pixel wide: 1, else 0. The outermost pixels are no edges, nor is a pixel
+/// whose surroundings hold a NaN. Beyond the picture nothing is weighed. Source: Canny, "A
+/// computational approach to edge detection", PAMI 1986, as scikit-image has it.
+[[nodiscard]] image<std::uint8_t> canny(view<const float> picture,
+                                        const canny_options& options = {});
+
+namespace detail {
+
+inline std::vector<double> gaussian_weights(double sigma) {
+  const auto radius = static_cast<std::size_t>(4 * sigma + 0.5);
+  std::vector<double> weights(2 * radius + 1);
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(radius);
+    sum += weights[i] = std::exp(-0.5 * x * x / (sigma * sigma));
+  }
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+enum class axis { x, y };
+
+/// Sums along an axis, weighted; beyond the picture there is 0.
+inline image<float> summed_along(const image<float>& from,
+                                 const std::vector<double>& weights,
+                                 axis along) {
+  const std::size_t radius = weights.size() / 2;
+  const bool rows = along == axis::x;
+  const std::size_t length = rows ? from.width() : from.height();
+  image<float> to(from.width(), from.height());
+  for (std::size_t y = 0; y < from.height(); ++y) {
+    for (std::size_t x = 0; x < from.width(); ++x) {
+      const std::size_t at = rows ? x : y;
+      double sum = 0;
+      for (std::size_t k = at < radius ? radius - at : 0;
+           k < weights.size() && at + k - radius < length; ++k) {
+        const std::size_t i = at + k - radius;
+        sum += weights[k] * static_cast<double>(rows ? from(i, y) : from(x, i));
+      }
+      to(x, y) = static_cast<float>(sum);
+    }
+  }
+  return to;
+}
+
+/// What of the weights falls inside, for each place of an axis.
+inline std::vector<double> weight_inside(const std::vector<double>& weights, std::size_t length) {
+  const std::size_t radius = weights.size() / 2;
+  std::vector<double> inside(length);
+  for (std::size_t at = 0; at < length; ++at) {
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      if (at + k >= radius && at + k - radius < length) inside[at] += weights[k];
+  }
+  return inside;
+}
+
+/// Gaussian mean over what lies inside of the picture.
+inline image<float> smoothed(const image<float>& picture, double sigma) {
+  const std::vector<double> weights = gaussian_weights(sigma);
+  image<float> smooth = summed_along(summed_along(picture, weights, axis::y), weights, axis::x);
+  const std::vector<double> across = weight_inside(weights, picture.width());
+  const std::vector<double> down = weight_inside(weights, picture.height());
+  for (std::size_t y = 0; y < picture.height(); ++y) {
+    for (std::size_t x = 0; x < picture.width(); ++x)
+      smooth(x, y) = static_cast<float>(static_cast<double>(smooth(x, y)) / (across[x] * down[y]));
+  }
+  return smooth;
+}
+
+/// Sobel gradients; beyond the picture its outermost pixels go on.
+struct gradients {
+  image<float> x, y, magnitude;
+};
+
+inline gradients sobel(const image<float>& p) {
+  const image<float> blank(p.width(), p.height());
+  gradients g{blank, blank, blank};
+  for (std::size_t y = 0; y < p.height(); ++y) {
+    const std::size_t up = y > 0 ? y - 1 : y, down = y + 1 < p.height() ? y + 1 : y;
+    for (std::size_t x = 0; x < p.width(); ++x) {
+      const std::size_t left = x > 0 ? x - 1 : x, right = x + 1 < p.width() ? x + 1 : x;
+      const auto across = [&](std::size_t v) { return p(right, v) - p(left, v); };
+      const auto along = [&](std::size_t u) { return p(u, down) - p(u, up); };
+      g.x(x, y) = across(up) + 2 * across(y) + across(down);
+      g.y(x, y) = along(left) + 2 * along(x) + along(right);
+      g.magnitude(x, y) = std::hypot(g.x(x, y), g.y(x, y));
+    }
+  }
+  return g;
+}
+
+/// Whether the gradients before and behind an inner pixel, in the direction of its own, are not
+/// larger. They are interpolated between two of the eight neighbours.
+inline bool is_ridge(const gradients& g, std::size_t x, std::size_t y) {
+  const float gx = g.x(x, y), gy = g.y(x, y), m = g.magnitude(x, y);
+  if (!(m > 0)) return false;
+  const bool steep = std::abs(gy) >= std::abs(gx);
+  const float share = steep ? std::abs(gx / gy) : std::abs(gy / gx);
+  const std::ptrdiff_t turn = (gx < 0) == (gy < 0) ? 1 : -1;
+  const auto at = [&](std::ptrdiff_t dx, std::ptrdiff_t dy) {
+    return g.magnitude(x + static_cast<std::size_t>(dx), y + static_cast<std::size_t>(dy));
+  };
+  const auto beside = [&](std::ptrdiff_t way) {
+    const float straight = steep ? at(0, way) : at(way, 0);
+    const float diagonal = steep ? at(turn * way, way) : at(way, turn * way);
+    return diagonal * share + straight * (1 - share);
+  };
+  return beside(1) <= m && beside(-1) <= m;
+}
+
+/// Marks what of `candidates` hangs together with pixel `from`, over sides and corners.
+inline void follow(std::size_t from,
+                   const image<std::uint8_t>& candidates,
+                   image<std::uint8_t>& edges) {
+  std::vector<std::size_t> open = {from};
+  edges.data()[from] = 1;
+  while (!open.empty()) {
+    const std::size_t x = open.back() % edges.width(), y = open.back() / edges.width();
+    open.pop_back();
+    for (std::size_t v = y - 1; v != y + 2; ++v) {  // candidates are inner pixels
+      for (std::size_t u = x - 1; u != x + 2; ++u) {
+        if (!candidates(u, v) || edges(u, v)) continue;
+        edges(u, v) = 1;
+        open.push_back(v * edges.width() + u);
+      }
+    }
+  }
+}
+
+}  // namespace detail
+
+inline image<std::uint8_t> canny(view<const float> picture, const canny_options& options) {
+  image<float> own(picture.width, picture.height);
+  for (std::size_t y = 0; y < picture.height; ++y)
+    std::copy_n(picture.row(y).begin(), picture.width, own.data() + y * picture.width);
+  const detail::gradients g = detail::sobel(detail::smoothed(own, options.sigma));
+  image<std::uint8_t> candidates(picture.width, picture.height), edges = candidates;
+  for (std::size_t y = 1; y + 1 < picture.height; ++y) {
+    for (std::size_t x = 1; x + 1 < picture.width; ++x)
+      candidates(x, y) =
+          static_cast<double>(g.magnitude(x, y)) >= options.low && detail::is_ridge(g, x, y);
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (candidates.data()[i] && !edges.data()[i] &&
+        static_cast<double>(g.magnitude.data()[i]) >= options.high)
+      detail::follow(i, candidates, edges);
+  }
+  return edges;
+}
+
+}  // namespace aib::raster
+
+// aib/depth/boundary_errors.hpp
+
+namespace aib::depth {
+
+/// How far the depth edges of an estimate lie from those of the truth, pixels.
+struct boundary_errors {
+  double accuracy;          ///< mean distance of estimated edges, of those nearer than 10 pixels
+  double completeness;      ///< mean distance of both from each other, cut at 10 pixels
+  std::size_t n_estimate;   ///< pixels of estimated edges
+  std::size_t n_reference;  ///< pixels of true edges
+};
+
+/// Depth edges as iBims-1 finds them: Canny (sigma root 2, 0.15, 0.3) of the map scaled to 0..1. A
+/// pixel without depth hides the edges near it. Without two different depths there is no edge.
+[[nodiscard]] raster::image<std::uint8_t> depth_edges(raster::view<const float> depth);
+
+/// Depth boundary errors (DBE). `edges` are the true ones, not 0: drawn by hand, or depth_edges of
+/// the reference. Without an estimated edge near a true one both errors are 10.
+///
+/// Throws argument_error if the sizes differ, undefined_error if there is no true edge.
+/// Source: Koch et al., "Evaluation of CNN-based single-image depth estimation methods", 2018,
+/// Eqs. (9), (10), as iBims-1's Python script calculates them.
+[[nodiscard]] boundary_errors boundary_error(raster::view<const float> estimate,
+                                             raster::view<const std::uint8_t> edges);
+
+namespace detail {
+
+inline constexpr std::size_t edge_reach = 10;
+
+/// Distance to the nearest edge pixel, at most edge_reach.
+inline double distance_to(raster::view<const std::uint8_t> edges, std::size_t x, std::size_t y) {
+  std::size_t least = edge_reach * edge_reach;
+  const auto low = [](std::size_t i) { return i - std::min(i, edge_reach); };
+  for (std::size_t v = low(y); v < std::min(y + edge_reach + 1, edges.height); ++v) {
+    for (std::size_t u = low(x); u < std::min(x + edge_reach + 1, edges.width); ++u) {
+      const std::size_t dx = u > x ? u - x : x - u, dy = v > y ? v - y : y - v;
+      if (edges(u, v) && dx * dx + dy * dy < least) least = dx * dx + dy * dy;
+    }
+  }
+  return std::sqrt(static_cast<double>(least));
+}
+
+/// Distances of edge pixels to the nearest of other edges.
+struct edge_distances {
+  std::size_t n = 0;
+  double sum = 0;
+  std::size_t n_near = 0;  ///< nearer than edge_reach
+  double sum_near = 0;
+};
+
+inline edge_distances distances_of(raster::view<const std::uint8_t> edges,
+                                   raster::view<const std::uint8_t> others) {
+  edge_distances d;
+  for (std::size_t y = 0; y < edges.height; ++y) {
+    for (std::size_t x = 0; x < edges.width; ++x) {
+      if (!edges(x, y)) continue;
+      const double distance = distance_to(others, x, y);
+      ++d.n;
+      d.sum += distance;
+      if (distance >= edge_reach) continue;
+      ++d.n_near;
+      d.sum_near += distance;
+    }
+  }
+  return d;
+}
+
+}  // namespace detail
+
+inline raster::image<std::uint8_t> depth_edges(raster::view<const float> depth) {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  float least = std::numeric_limits<float>::infinity(), most = 0;
+  for (std::size_t y = 0; y < depth.height; ++y) {
+    for (const float z : depth.row(y)) {
+      if (!is_valid(z)) continue;
+      least = std::min(least, z);
+      most = std::max(most, z);
+    }
+  }
+  raster::image<float> scaled(depth.width, depth.height, none);
+  if (!(most > least)) return {depth.width, depth.height};
+  for (std::size_t y = 0; y < depth.height; ++y) {
+    for (std::size_t x = 0; x < depth.width; ++x) {
+      if (is_valid(depth(x, y))) scaled(x, y) = (depth(x, y) - least) / (most - least);
+    }
+  }
+  return raster::canny(scaled, {.sigma = std::numbers::sqrt2, .low = 0.15, .high = 0.3});
+}
+
+inline boundary_errors boundary_error(raster::view<const float> estimate,
+                                      raster::view<const std::uint8_t> edges) {
+  if (estimate.width != edges.width || estimate.height != edges.height) {
+    throw argument_error(message("depth::boundary_error: the estimate is ", estimate.width, "x",
+                                 estimate.height, ", the edges are ", edges.width, "x",
+                                 edges.height));
+  }
+  const raster::image<std::uint8_t> found = depth_edges(estimate);
+  const detail::edge_distances of_estimate = detail::distances_of(found, edges);
+  const detail::edge_distances of_reference = detail::distances_of(edges, found);
+  if (of_reference.n == 0) throw undefined_error("depth::boundary_error: no true edge");
+  boundary_errors out{detail::edge_reach, detail::edge_reach, of_estimate.n, of_reference.n};
+  if (of_estimate.n_near == 0) return out;
+  out.accuracy = of_estimate.sum_near / static_cast<double>(of_estimate.n_near);
+  out.completeness =
+      (of_estimate.sum + of_reference.sum) / static_cast<double>(of_estimate.n + of_reference.n);
+  return out;
+}
+
+}  // namespace aib::depth
+
 // aib/raster/downsample.hpp
 
 namespace aib::raster {

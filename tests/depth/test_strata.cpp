@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/boundary.hpp>
+#include <aib/depth/boundary_errors.hpp>
 #include <aib/depth/strata.hpp>
 
 #include <doctest/doctest.h>
@@ -169,4 +170,48 @@ TEST_CASE("boundary F1 keeps its properties: single step, flat map, one pixel of
   hole(1, 1) = 0;
   CHECK(depth::boundary_f1(view(hole), view(step)) < 0.25);
   CHECK_THROWS_AS((void)depth::boundary_f1(view(step), view(step), {.n = 0}), argument_error);
+}
+
+namespace {
+
+/// A disc and a block before a slanted wall.
+raster::image<float> disc_and_block(int x, int y, int square, std::size_t block, double wall) {
+  raster::image<float> map(64, 48);
+  for (std::size_t v = 0; v < 48; ++v) {
+    for (std::size_t u = 0; u < 64; ++u) {
+      const int dx = static_cast<int>(u) - x, dy = static_cast<int>(v) - y;
+      const double slant = 0.01 * static_cast<double>(u) + 0.003 * static_cast<double>(v);
+      map(u, v) = static_cast<float>((dx * dx + dy * dy < square ? 2.0 : wall) + slant);
+      if (v >= 30 && v < 42 && u >= block && u < block + 17) map(u, v) = 3.25F;
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+// Expected: iBims-1's formulas with scikit-image 0.19 and SciPy.
+TEST_CASE("boundary errors are those of iBims-1") {
+  const auto reference = disc_and_block(20, 15, 90, 40, 5.0);
+  const auto estimate = disc_and_block(22, 16, 85, 38, 5.5);
+  const auto edges = depth::depth_edges(reference);
+  const auto found = depth::boundary_error(estimate, edges);
+  CHECK(found.n_estimate == 128);
+  CHECK(found.n_reference == 128);
+  CHECK(found.accuracy == Approx(1.076170581975328).epsilon(1e-12));
+  CHECK(found.completeness == Approx(1.0854090904987332).epsilon(1e-12));
+}
+
+TEST_CASE("boundary errors: the same map, no edge near, no true edge, other sizes") {
+  const auto reference = disc_and_block(20, 15, 90, 40, 5.0);
+  const auto edges = depth::depth_edges(reference);
+  CHECK(depth::boundary_error(reference, edges).completeness == 0);
+  const raster::image<float> flat(64, 48, 2);
+  const auto missed = depth::boundary_error(flat, edges);
+  CHECK(missed.accuracy == 10);
+  CHECK(missed.completeness == 10);
+  CHECK(missed.n_estimate == 0);
+  const raster::image<std::uint8_t> none(64, 48), small(3, 3, 1);
+  CHECK_THROWS_AS((void)depth::boundary_error(reference, none), undefined_error);
+  CHECK_THROWS_AS((void)depth::boundary_error(reference, small), argument_error);
 }

@@ -179,6 +179,18 @@ function depth.strata(reference, options) end
 ---@return number f1
 function depth.boundary_f1(estimate, reference, options) end
 
+---Depth edges as iBims-1 finds them: Canny (sigma root 2, 0.15, 0.3) of the map scaled to 0..1. 1 on an edge, else 0.
+---@param depth aib.DepthMap
+---@return aib.LabelImage edges
+function depth.edges(depth) end
+
+---Depth boundary errors (DBE) of iBims-1, pixels: how far estimated edges lie from true ones, of those nearer than 10
+---pixels; how far both lie from each other, cut at 10. Both are 10 where no estimated edge is near a true one.
+---@param estimate aib.DepthMap
+---@param edges aib.LabelImage  # not 0 on a true edge: drawn, or aib.depth.edges of the reference
+---@return { accuracy: number, completeness: number, n_estimate: integer, n_reference: integer } errors
+function depth.boundary_errors(estimate, edges) end
+
 ---A picture of three panels: the estimate as aligned, the reference, and the signed relative error; blue is near or
 ---too near, yellow far, red too far, hatched grey without a value. Written by `aib.io.write_image`.
 ---@param estimate aib.DepthMap
