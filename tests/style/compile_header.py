@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Compiles one header alone, all warnings as errors, and writes what the compiler says to a report.
 
-usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRELUDE]
-       compile_header.py --prelude COMPILER BUILD_FOLDER HEADERS PRELUDE
+usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE
 
 An empty report is a header that compiles. Flags are those the tests are built with. A header whose
-library is not here is skipped. A prelude is what g++ has read beforehand (prelude.hpp.gch).
+library is not here is skipped.
 """
 
 import json
@@ -27,14 +26,8 @@ def flags_of_tests(build_folder):
     return [*flags, "-fdiagnostics-color=never"]
 
 
-def precompile(compiler, build_folder, headers, prelude):
-    command = [compiler, *flags_of_tests(build_folder), "-x", "c++-header", headers, "-o", prelude]
-    subprocess.run(command, cwd=build_folder, check=True)
-
-
-def main(compiler, build_folder, header, report, depfile, prelude=None):
+def main(compiler, build_folder, header, report, depfile):
     command = [compiler, *flags_of_tests(build_folder), "-fsyntax-only", "-MD", "-MF", depfile]
-    command += ["-include", prelude.removesuffix(".gch")] if prelude else []
     command += ["-MT", report, "-x", "c++", "-include", header, "/dev/null"]
     run = subprocess.run(command, cwd=build_folder, capture_output=True, text=True)
     absent = ABSENT.search(run.stderr)
@@ -46,7 +39,4 @@ def main(compiler, build_folder, header, report, depfile, prelude=None):
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--prelude":
-        precompile(*sys.argv[2:])
-    else:
-        main(*sys.argv[1:])
+    main(*sys.argv[1:])
