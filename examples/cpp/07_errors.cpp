@@ -1,12 +1,12 @@
 // One family of exceptions; a message says where, what was expected, what was found.
 #include <aib/cloud/compare.hpp>
-#include <aib/io/trajectory.hpp>
+#include <aib/io/tum.hpp>
 
 #include <cstdio>
 
 int main() {
   try {
-    (void)aib::io::read_trajectory("examples/data/nowhere");
+    (void)aib::io::read_tum("examples/data/nowhere.tum");
   } catch (const aib::io_error& e) {
     std::printf("io_error: %s\n", e.what());
   }

@@ -22,7 +22,7 @@ def printed_by(command, root):
 
 def main(root, *arguments):
     middle = arguments.index("--")
-    command, examples = list(arguments[:middle]), arguments[middle + 1 :]
+    command, examples = [str(pathlib.Path(a).resolve()) for a in arguments[:middle]], arguments[middle + 1 :]
     passed = failed = 0
     for example in examples:
         source, _, program = example.partition("=")

@@ -12,7 +12,7 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
-INSTRUCTION_SETS = {"plain": ["-DAIB_PLAIN"], "sse2": [], "avx2": ["-mavx2"], "native": ["-march=native"]}
+INSTRUCTION_SETS = {"plain": ["-DAIB_PLAIN"], "sse2": [], "native": ["-march=native"]}
 
 
 def eigen_flags():

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Compiles one header alone, all warnings as errors, and writes what the compiler says to a report.
 
-usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE
+usage: compile_header.py COMPILER BUILD_FOLDER HEADER REPORT DEPFILE [PRELUDE]
+       compile_header.py --prelude COMPILER BUILD_FOLDER HEADERS PRELUDE
 
 An empty report is a header that compiles. Flags are those the tests are built with. A header whose
-library is not here is skipped.
+library is not here is skipped. A prelude is what clang has read beforehand.
 """
 
 import json
@@ -26,8 +27,14 @@ def flags_of_tests(build_folder):
     return [*flags, "-fdiagnostics-color=never"]
 
 
-def main(compiler, build_folder, header, report, depfile):
+def precompile(compiler, build_folder, headers, prelude):
+    command = [compiler, *flags_of_tests(build_folder), "-x", "c++-header", headers, "-o", prelude]
+    subprocess.run(command, cwd=build_folder, check=True)
+
+
+def main(compiler, build_folder, header, report, depfile, prelude=None):
     command = [compiler, *flags_of_tests(build_folder), "-fsyntax-only", "-MD", "-MF", depfile]
+    command += ["-include-pch", prelude] if prelude else []
     command += ["-MT", report, "-x", "c++", "-include", header, "/dev/null"]
     run = subprocess.run(command, cwd=build_folder, capture_output=True, text=True)
     absent = ABSENT.search(run.stderr)
@@ -39,4 +46,7 @@ def main(compiler, build_folder, header, report, depfile):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1] == "--prelude":
+        precompile(*sys.argv[2:])
+    else:
+        main(*sys.argv[1:])

@@ -4,6 +4,7 @@
 
 #include <aib/core/message.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>

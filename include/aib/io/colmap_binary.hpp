@@ -14,6 +14,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 /// COLMAP's binary files, little endian, of every version to 4.2.

@@ -11,6 +11,7 @@
 #include <aib/raster/image.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -5,6 +5,7 @@
 #include <aib/core/error.hpp>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

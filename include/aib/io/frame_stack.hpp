@@ -9,6 +9,7 @@
 #include <aib/raster/image.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>

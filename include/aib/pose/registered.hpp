@@ -7,6 +7,7 @@
 #include <aib/pose/trajectory.hpp>
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include <aib/raster/image.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace aib::raster {
