@@ -2,15 +2,9 @@
 -- The words are those of the stubs, which editors and help() show too.
 local shell = require "aib.shell"
 local stubs = require "aib.stubs"
+local suggest = require "aib.suggest"
 
 local folder = assert(arg[1], "usage: aib-lua reference.lua FOLDER")
-
-local function sorted_keys(t)
-  local keys = {}
-  for key in pairs(t) do keys[#keys + 1] = key end
-  table.sort(keys)
-  return keys
-end
 
 local function cell(text) return (text:gsub("|", "\\|"):gsub("[<>]", { ["<"] = "&lt;", [">"] = "&gt;" })) end
 
@@ -50,14 +44,14 @@ local function page(text)
       owners[owner][name] = entry
     end
   end
-  local order = sorted_keys(owners)
+  local order = suggest.keys(owners)
   table.sort(order, function(a, b)
     if (a == module) ~= (b == module) then return a == module end
     return a < b
   end)
   for _, owner in ipairs(order) do
     if entries[owner] then out[#out + 1] = section(entries[owner], module) end
-    for _, name in ipairs(sorted_keys(owners[owner])) do
+    for _, name in ipairs(suggest.keys(owners[owner])) do
       if name ~= owner then out[#out + 1] = section(owners[owner][name], module) end
     end
   end

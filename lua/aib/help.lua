@@ -4,16 +4,10 @@
 --- help(x): what the stubs say about a function, a module, an object or a name.
 local shell = require "aib.shell"
 local stubs = require "aib.stubs"
+local suggest = require "aib.suggest"
 local text = require "aib.report.text"
 
 local M = {}
-
-local function keys_of(t)
-  local keys = {}
-  for key in pairs(t) do keys[#keys + 1] = key end
-  table.sort(keys)
-  return keys
-end
 
 --- Name of a value: of a bound function, a module, an object's type; a text is a name already.
 local function name_of(value)
@@ -54,7 +48,7 @@ end
 --- The names below a module or type, with their first lines.
 local function contents(name)
   local lines = {}
-  for _, member in ipairs(keys_of(stubs.all())) do
+  for _, member in ipairs(suggest.keys(stubs.all())) do
     local entry = stubs.all()[member]
     local below = member:sub(1, #name + 1)
     if below == name .. "." or below == name .. ":" then

@@ -3,9 +3,9 @@
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/fit.hpp>
 #include <aib/io/depth_frame.hpp>
-#include <aib/stats/bootstrap.hpp>
 
 #include "depth.hpp"
+#include "stats.hpp"
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -140,21 +140,10 @@ void bind_accumulator(lua_State* state) {
               })
       .method("interval", {"options"}, [](lua_State* l, const accumulator& a, options& o) {
         const auto field = field_option(o);
-        stats::bootstrap_options b;
-        b.block = o.count("block", b.block);
-        b.resamples = o.count("resamples", b.resamples);
-        b.level = o.number("level", b.level);
-        b.seed = o.count("seed", b.seed);
-        o.done();
         std::vector<double> values;
         for (const auto& f : a.frames())
           if (f.errors) values.push_back((*f.errors).*field);
-        const auto i = stats::bootstrap_mean(values, b);
-        return record(l)
-            .set("mean", i.mean)
-            .set("low", i.low)
-            .set("high", i.high)
-            .set("deviation", i.deviation);
+        return bootstrap_record(l, values, o);
       });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
-#include <aib/stats/bootstrap.hpp>
+#include "stats.hpp"
+
 #include <aib/stats/moments.hpp>
 #include <aib/stats/quantiles.hpp>
 #include <aib/stats/summary.hpp>
@@ -63,16 +64,7 @@ void bind_stats(lua_State* state) {
                 })
       .function("bootstrap", {"values", "options"},
                 [](lua_State* l, const std::vector<double>& values, options& o) {
-                  stats::bootstrap_options b;
-                  b.block = o.count("block", b.block);
-                  b.resamples = o.count("resamples", b.resamples);
-                  b.level = o.number("level", b.level);
-                  b.seed = o.count("seed", b.seed);
-                  o.done();
-                  const auto i = stats::bootstrap_mean(values, b);
-                  record r(l);
-                  r.set("mean", i.mean).set("low", i.low).set("high", i.high);
-                  return r.set("deviation", i.deviation);
+                  return bootstrap_record(l, values, o);
                 });
 }
 

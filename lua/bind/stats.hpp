@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/stats/bootstrap.hpp>
+
+#include "kit.hpp"
+#include <vector>
+
+namespace aib::bind {
+
+/// The bootstrap interval of a mean: reads the options, which end with it.
+inline record bootstrap_record(lua_State* state, const std::vector<double>& values, options& o) {
+  stats::bootstrap_options b;
+  b.block = o.count("block", b.block);
+  b.resamples = o.count("resamples", b.resamples);
+  b.level = o.number("level", b.level);
+  b.seed = o.count("seed", b.seed);
+  o.done();
+  const auto i = stats::bootstrap_mean(values, b);
+  return record(state)
+      .set("mean", i.mean)
+      .set("low", i.low)
+      .set("high", i.high)
+      .set("deviation", i.deviation);
+}
+
+}  // namespace aib::bind
