@@ -78,7 +78,7 @@ TEST_CASE("yaw_scale fits the scale as well and keeps down where it is") {
   const align::trajectory_options options{.fit = {.mode = align_mode::yaw_scale}};
   const auto a = align::trajectory(truth.inverse() * reference, reference, options);
   CHECK(distance(a.transform, truth) < 1e-12);
-  CHECK(a.turn_deg < 1e-6);
+  CHECK(a.turn->deg < 1e-6);
   CHECK(*a.half_rmse < 1e-12);
   const math::sim3 tilted{0.5, math::rotation_from(Eigen::Vector3d(0.2, 0, 0.7)), {1, 2, 3}};
   const auto b = align::trajectory(tilted * reference, reference, options);
@@ -103,7 +103,7 @@ TEST_CASE("a climb beside the vertical leaves the turn about it free, and yaw sa
   }
   const auto a = align::trajectory(synthetic::noisy(reference, {.position = 0.02}), reference,
                                    {.fit = {.mode = align_mode::yaw}});
-  CHECK(a.turn_deg > 5);
+  CHECK(a.turn->deg > 5);
   REQUIRE(a.warnings.size() == 1);
   CHECK(a.warnings[0].find("the turn about (0, 0, 1)") == 0);
 }
@@ -133,6 +133,7 @@ TEST_CASE("orientations tell the turn about a straight flight") {
       align::trajectory(in_own_world(reference), reference, {.fit = {.rotation_weight = 1}});
   CHECK(distance(a.transform, synthetic::some_sim3()) < 1e-10);
   CHECK(a.warnings.empty());
+  CHECK(!a.turn);
   const auto rigid = align::trajectory(reference, reference,
                                        {.fit = {.mode = align_mode::se3, .rotation_weight = 1}});
   CHECK(distance(rigid.transform, {}) < 1e-12);
@@ -145,8 +146,8 @@ TEST_CASE("a nearly straight flight is warned about, with the axis and the error
   REQUIRE(a.warnings.size() == 1);
   CHECK(a.warnings[0].find("the turn about (1, 0, 0)") != std::string::npos);
   CHECK(a.condition > 100);
-  CHECK(a.turn_deg > 10);
-  CHECK(a.turn_error == doctest::Approx(20 * std::sin(math::radians(a.turn_deg) / 2)));
+  CHECK(a.turn->deg > 10);
+  CHECK(a.turn->error == doctest::Approx(20 * std::sin(math::radians(a.turn->deg) / 2)));
 }
 
 TEST_CASE("the foretold error of the turn is the one that comes out") {
@@ -159,7 +160,7 @@ TEST_CASE("the foretold error of the turn is the one that comes out") {
         reference);
     const Eigen::Vector3d turn = math::axis_angle_from(a.transform.rotation);
     sum += std::pow(math::degrees(turn[0]), 2);
-    foretold += std::pow(a.turn_deg, 2);
+    foretold += std::pow(a.turn->deg, 2);
   }
   CHECK(std::sqrt(sum / foretold) == doctest::Approx(1).epsilon(0.25));
 }

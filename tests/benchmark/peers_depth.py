@@ -94,4 +94,5 @@ print("value %.17g" % srmse(*first))
 begin = time.perf_counter()
 for est, ref in pairs:
     errors(read(est), read(ref))
+print("by", "OpenCV" if cv2 and cv2.imread(pairs[0][0], cv2.IMREAD_UNCHANGED) is not None else "zlib")
 print("pipeline %.3f" % (n / (time.perf_counter() - begin)))

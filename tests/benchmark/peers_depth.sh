@@ -4,18 +4,21 @@
 #
 # peers_depth.sh [FRAMES] [ROUNDS] [THREADS]
 #
-# Times aib beside numpy (float64) and, where it is here, OpenCV and tinyexr, on 1080p frames in ZIP
-# EXR files that it makes: the kernel, the decoder on one thread, the whole pipeline. Round by round
+# Times aib beside numpy (float64) and, where they are here, OpenCV, tinyexr and OpenEXR, on 1080p
+# frames in ZIP EXR files that it makes: the kernel, the decoder on one thread, the whole pipeline. Round by round
 # in one run; prints the medians and their ratios.
 set -eu
 frames=${1:-8} rounds=${2:-5} threads=${3:-2}
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-tinyexr=
-echo '#include <tinyexr.h>' | g++ -x c++ -E - > /dev/null 2>&1 && tinyexr="-DAIB_TEST_TINYEXR -ltinyexr"
+has() { echo "#include <$1>" | g++ -x c++ -E $openexr - > /dev/null 2>&1; }
+openexr=$(pkg-config --silence-errors --cflags OpenEXR || true)
+others=
+has tinyexr.h && others="-DAIB_TEST_TINYEXR -ltinyexr"
+has OpenEXR/ImfInputFile.h && others="$others -DAIB_TEST_OPENEXR $openexr $(pkg-config --libs OpenEXR)"
 g++ -O3 -std=c++20 -ffp-contract=off -march=native -I "$here/../../include" -isystem /usr/include/eigen3 \
-  -DAIB_WITH_EXR -DAIB_WITH_LIBDEFLATE -o "$work/time_depth" "$here/time_depth.cpp" $tinyexr -ldeflate -lz -pthread
+  -DAIB_WITH_EXR -DAIB_WITH_LIBDEFLATE -o "$work/time_depth" "$here/time_depth.cpp" $others -ldeflate -lz -pthread
 python=$(command -p -v python3)
 cd "$work"
 ./time_depth make . "$frames"
@@ -31,9 +34,10 @@ for what in srmse all; do
   ours=$(median aib_$what) theirs=$(median numpy_$what)
   echo "$what: aib $ours ms, numpy $theirs ms, ratio $(ratio "$theirs" "$ours")"
 done
-if grep -q tinyexr times; then
-  ours=$(median aib_aib) theirs=$(median aib_tinyexr)
-  echo "decode ZIP: aib $ours ms, tinyexr $theirs ms, ratio $(ratio "$theirs" "$ours")"
-fi
+for reader in tinyexr openexr; do
+  grep -q "$reader" times || { echo "$reader: not here"; continue; }
+  ours=$(median aib_aib) theirs=$(median aib_$reader)
+  echo "decode ZIP, one thread: aib $ours ms, $reader $theirs ms, ratio $(ratio "$theirs" "$ours")"
+done
 ours=$(median aib_pipeline) theirs=$(median numpy_pipeline)
 echo "pipeline, $threads threads: aib $ours frames/s, numpy $theirs frames/s, ratio $(ratio "$ours" "$theirs")"

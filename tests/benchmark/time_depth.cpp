@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 
-/// time_depth make FOLDER N             writes N pairs of 1080p frames: N.est.exr, N.gt.exr (ZIP)
+/// time_depth make FOLDER N             writes N pairs of 1080p frames: N.est.exr, N.gt.exr (ZIP,
+///                                      channel Y, the only one of depth that OpenCV reads)
 /// time_depth kernel|decode FOLDER      milliseconds of srmse and of all errors; of a file
 /// time_depth pipeline FOLDER N THREADS frames a second: two files and all errors
 #include <aib/depth/accumulate.hpp>
@@ -17,6 +18,13 @@
 
 #ifdef AIB_TEST_TINYEXR
 #include <tinyexr.h>
+#endif
+#ifdef AIB_TEST_OPENEXR
+#include <ImathBox.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfThreading.h>
 #endif
 
 using namespace aib;
@@ -44,8 +52,8 @@ std::string path_of(const std::string& folder, std::size_t i, const char* kind) 
 void make(const std::string& folder, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     const frame_pair f = made_frame(i);
-    io::write_exr(path_of(folder, i, "est"), f.estimate.view());
-    io::write_exr(path_of(folder, i, "gt"), f.reference.view());
+    io::write_exr(path_of(folder, i, "est"), f.estimate.view(), {.channel = "Y"});
+    io::write_exr(path_of(folder, i, "gt"), f.reference.view(), {.channel = "Y"});
   }
 }
 
@@ -73,11 +81,29 @@ void read_by_tinyexr(const std::string& path) {
 }
 #endif
 
+#ifdef AIB_TEST_OPENEXR
+void read_by_openexr(const std::string& path) {
+  Imf::InputFile file(path.c_str(), 0);  // 0: no threads beside this one
+  const auto box = file.header().dataWindow();
+  const auto width = static_cast<std::size_t>(box.max.x - box.min.x + 1);
+  std::vector<float> values(width * static_cast<std::size_t>(box.max.y - box.min.y + 1));
+  Imf::FrameBuffer buffer;
+  buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                sizeof(float) * width));
+  file.setFrameBuffer(buffer);
+  file.readPixels(box.min.y, box.max.y);
+}
+#endif
+
 void time_decode(const std::string& folder) {
   const std::string path = path_of(folder, 0, "est");
   std::printf("aib %.3f\n", milliseconds([&] { static_cast<void>(io::read_depth(path)); }));
 #ifdef AIB_TEST_TINYEXR
   std::printf("tinyexr %.3f\n", milliseconds([&] { read_by_tinyexr(path); }));
+#endif
+#ifdef AIB_TEST_OPENEXR
+  Imf::setGlobalThreadCount(0);
+  std::printf("openexr %.3f\n", milliseconds([&] { read_by_openexr(path); }));
 #endif
 }
 

@@ -36,6 +36,12 @@ struct trajectory_options {
   double stand_off = 10;  ///< distance at which the error of a turn is foretold, reference's unit
 };
 
+/// How well the positions tell the turn that they tell worst.
+struct turn_doubt {
+  double deg;    ///< its expected error, <= 90
+  double error;  ///< what that moves a point `stand_off` away from its axis
+};
+
 /// How one trajectory lies in the world of another.
 struct alignment {
   math::sim3 transform;               ///< ref_from_est
@@ -43,9 +49,8 @@ struct alignment {
   std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
   double rmse;                        ///< of the inliers' positions, unit of the reference
   std::optional<double> half_rmse;    ///< of every other inlier under a fit to the others
-  double condition;   ///< first over second singular value of the positions, of the worse side
-  double turn_deg;    ///< expected error of the turn that the positions tell worst, <= 90
-  double turn_error;  ///< what that moves a point `stand_off` away from its axis
+  double condition;  ///< first over second singular value of the positions, of the worse side
+  std::optional<turn_doubt> turn;  ///< of a fit that turns, to positions alone
   std::vector<std::string> warnings;
 };
 
@@ -108,7 +113,7 @@ inline std::optional<double> half_rmse(const pose_fit& fit, std::span<const std:
 inline std::string turn_warning(const alignment& a, const Eigen::Vector3d& axis, double stand_off) {
   return message("the turn about ", direction_text(axis), ", along which the positions lie ",
                  "(condition ", std::round(a.condition), "), is known to +-",
-                 std::round(a.turn_deg * 10) / 10, " deg, ", std::round(a.turn_error * 100) / 100,
+                 std::round(a.turn->deg * 10) / 10, " deg, ", std::round(a.turn->error * 100) / 100,
                  " at a distance of ", stand_off, "; rotation_weight uses the orientations");
 }
 
@@ -144,8 +149,7 @@ inline alignment trajectory(const pose::trajectory& estimate,
                 .rmse = 0,
                 .half_rmse = detail::half_rmse(fit, used),
                 .condition = 1,
-                .turn_deg = 0,
-                .turn_error = 0,
+                .turn = std::nullopt,
                 .warnings = {}};
   std::vector<std::size_t> left_out;
   std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
@@ -164,10 +168,9 @@ inline alignment trajectory(const pose::trajectory& estimate,
     // Of both sides the thinner: noise widens a line, it never narrows one.
     const double lever = std::min(out.transform.scale * in_estimate.lever, in_reference.lever);
     const double turn = detail::turn_sigma(lever, sse, used.size(), detail::parameters_of(mode));
-    out.turn_deg = math::degrees(turn);
-    out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
+    out.turn = {math::degrees(turn), 2 * options.stand_off * std::sin(turn / 2)};
     const bool thin = !is_about_vertical(mode) && 1 / out.condition < doubted_ratio;
-    if (thin || out.turn_deg > 5)
+    if (thin || out.turn->deg > 5)
       out.warnings.push_back(detail::turn_warning(out, in_reference.axis, options.stand_off));
   }
   if (has_scale(mode)) {

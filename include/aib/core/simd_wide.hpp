@@ -13,6 +13,24 @@ inline namespace AIB_ISA {
 
 #if !defined(AIB_PLAIN) && defined(__AVX512F__)
 
+/// Sixteen floats that are calculated together, see simd.hpp.
+struct f32x16 {
+  static constexpr std::size_t width = 16;
+  static constexpr __mmask16 all = 0xffff;
+  __m512 v;
+
+  static f32x16 load(const float* p) { return {_mm512_loadu_ps(p)}; }
+  static f32x16 broadcast(float x) { return {_mm512_set1_ps(x)}; }
+  void store(float* p) const { _mm512_storeu_ps(p, v); }
+
+  friend f32x16 operator+(f32x16 a, f32x16 b) { return {_mm512_add_ps(a.v, b.v)}; }
+  friend f32x16 operator-(f32x16 a, f32x16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
+  friend f32x16 operator*(f32x16 a, f32x16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
+  friend f32x16 min(f32x16 a, f32x16 b) { return {_mm512_maskz_min_ps(all, a.v, b.v)}; }
+  friend f32x16 max(f32x16 a, f32x16 b) { return {_mm512_maskz_max_ps(all, a.v, b.v)}; }
+  friend unsigned less(f32x16 a, f32x16 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ); }
+};
+
 /// Eight doubles that are calculated together, see simd.hpp.
 ///
 /// The masked forms of what works on all lanes: g++ 12 warns of the others.
@@ -49,6 +67,26 @@ struct f64x8 {
 };
 
 #else
+
+/// Sixteen floats that are calculated together, see simd.hpp.
+struct f32x16 {
+  static constexpr std::size_t width = 16;
+  f32x8 lo, hi;
+
+  static f32x16 load(const float* p) { return {f32x8::load(p), f32x8::load(p + 8)}; }
+  static f32x16 broadcast(float x) { return {f32x8::broadcast(x), f32x8::broadcast(x)}; }
+  void store(float* p) const {
+    lo.store(p);
+    hi.store(p + 8);
+  }
+
+  friend f32x16 operator+(f32x16 a, f32x16 b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend f32x16 operator-(f32x16 a, f32x16 b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend f32x16 operator*(f32x16 a, f32x16 b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend f32x16 min(f32x16 a, f32x16 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend f32x16 max(f32x16 a, f32x16 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend unsigned less(f32x16 a, f32x16 b) { return less(a.lo, b.lo) | less(a.hi, b.hi) << 8; }
+};
 
 /// Eight doubles that are calculated together, see simd.hpp.
 struct f64x8 {

@@ -13,7 +13,10 @@ inline namespace AIB_ISA {
 
 /// Squared length in the one order of operations that all searches use: rounding is monotone, so a
 /// box never seems farther than a point in it, and pruning loses no nearest neighbour.
-inline f32x8 squared_length(f32x8 x, f32x8 y, f32x8 z) { return (x * x + y * y) + z * z; }
+template <class Lanes>
+Lanes squared_length(Lanes x, Lanes y, Lanes z) {
+  return (x * x + y * y) + z * z;
+}
 
 /// Eight-fold a point.
 struct query {

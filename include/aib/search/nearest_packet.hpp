@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/core/simd_wide.hpp>
 #include <aib/search/box_tree.hpp>
 #include <aib/search/nearest_one.hpp>
 
@@ -17,19 +18,17 @@ inline namespace AIB_ISA {
 
 /// Sixteen queries, a lane each, and the squared distances known so far.
 struct packet {
-  static constexpr std::size_t size = 16;
-  f32x8 axis[3][2];
-  f32x8 best[2];
+  static constexpr std::size_t size = f32x16::width;
+  f32x16 axis[3];
+  f32x16 best;
 
   /// Takes the sixteen points of a block into account.
   void visit(const point_block& block) {
     for (std::size_t j = 0; j < point_block::size; ++j) {
-      const f32x8 x = f32x8::broadcast(block.axis[0][j]);
-      const f32x8 y = f32x8::broadcast(block.axis[1][j]);
-      const f32x8 z = f32x8::broadcast(block.axis[2][j]);
-      for (int v = 0; v < 2; ++v) {
-        best[v] = min(best[v], squared_length(axis[0][v] - x, axis[1][v] - y, axis[2][v] - z));
-      }
+      const f32x16 x = f32x16::broadcast(block.axis[0][j]);
+      const f32x16 y = f32x16::broadcast(block.axis[1][j]);
+      const f32x16 z = f32x16::broadcast(block.axis[2][j]);
+      best = min(best, squared_length(axis[0] - x, axis[1] - y, axis[2] - z));
     }
   }
 };
@@ -120,17 +119,15 @@ inline void super_packet::load(std::span<const point_block> queries) {
 }
 
 inline packet super_packet::load_packet(std::size_t p) const {
+  const std::size_t first = p * packet::size;
   packet q;
-  for (std::size_t v = 0; v < 2; ++v) {
-    const std::size_t lane = p * packet::size + 8 * v;
-    for (int k = 0; k < 3; ++k) q.axis[k][v] = f32x8::load(axis_[k] + lane);
-    q.best[v] = f32x8::load(best_ + lane);
-  }
+  for (int k = 0; k < 3; ++k) q.axis[k] = f32x16::load(axis_[k] + first);
+  q.best = f32x16::load(best_ + first);
   return q;
 }
 
 inline void super_packet::store_best(std::size_t p, const packet& q) {
-  for (std::size_t v = 0; v < 2; ++v) q.best[v].store(best_ + p * packet::size + 8 * v);
+  q.best.store(best_ + p * packet::size);
 }
 
 /// Each packet looks at the block that the curve leads it to and at its two neighbours.
@@ -246,24 +243,21 @@ inline void super_packet::pad_candidates() {
 inline bool super_packet::may_improve(const packet& q,
                                       const float (&low)[3],
                                       const float (&high)[3]) {
-  unsigned any = 0;
-  for (int v = 0; v < 2; ++v) {
-    f32x8 gap[3];
-    for (int k = 0; k < 3; ++k) {
-      const f32x8 before = f32x8::broadcast(low[k]) - q.axis[k][v];
-      const f32x8 behind = q.axis[k][v] - f32x8::broadcast(high[k]);
-      gap[k] = max(max(before, behind), f32x8::broadcast(0));
-    }
-    any |= less(squared_length(gap[0], gap[1], gap[2]), q.best[v]);
+  f32x16 gap[3];
+  for (int k = 0; k < 3; ++k) {
+    const f32x16 before = f32x16::broadcast(low[k]) - q.axis[k];
+    const f32x16 behind = q.axis[k] - f32x16::broadcast(high[k]);
+    gap[k] = max(max(before, behind), f32x16::broadcast(0));
   }
-  return any != 0;
+  return less(squared_length(gap[0], gap[1], gap[2]), q.best) != 0;
 }
 
 inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
   const std::size_t first = p * packet::size;
   const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
   packet q = load_packet(p);
-  const f32x8 worst = f32x8::broadcast(highest(max(q.best[0], q.best[1])));
+  const f32x8 worst =
+      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
   for (std::size_t i = 0; i < candidates_; i += 8) {
     f32x8 gap[3];
     for (int k = 0; k < 3; ++k) {
