@@ -13,6 +13,7 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -44,7 +45,7 @@ struct chunk {
 /// `size` alone, so that per-chunk results combined in order are bit-identical for any number of
 /// threads.
 ///
-/// threads   0: available_threads()
+/// threads   0: available_threads(); fewer where the system gives no more
 ///
 /// A call from inside a body runs on the calling thread. The first exception (lowest chunk) is
 /// rethrown. Throws stopped_error when `control.stop` was requested.
@@ -161,7 +162,10 @@ void for_each_chunk(
   {
     std::vector<std::jthread> pool;
     pool.reserve(workers - 1);
-    for (std::size_t i = 1; i < workers; ++i) pool.emplace_back([&] { region.work(body); });
+    try {
+      for (std::size_t i = 1; i < workers; ++i) pool.emplace_back([&] { region.work(body); });
+    } catch (const std::system_error&) {  // a limit of threads or memory: fewer do the work
+    }
     region.work(body);
   }
   region.finish();

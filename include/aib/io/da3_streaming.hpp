@@ -39,11 +39,11 @@ namespace aib::io {
 /// Source: Depth-Anything-3, da3_streaming.
 [[nodiscard]] inline posed_images read_da3_streaming(const std::filesystem::path& path,
                                                      const pose_frame& frame = {}) {
-  const bool folder = std::filesystem::is_directory(path);
+  const bool folder = is_folder(path);
   const std::filesystem::path poses = folder ? path / "camera_poses.txt" : path;
   const std::filesystem::path intrinsics = poses.parent_path() / "intrinsic.txt";
   posed_images images{read_matrix_lines(poses, frame), {}};
-  if (!std::filesystem::exists(intrinsics)) return images;
+  if (!is_there(intrinsics)) return images;
   images.cameras = read_intrinsic_lines(intrinsics);
   if (images.cameras.size() != images.trajectory.size()) {
     throw format_error(intrinsics, message("a line for each of the ", images.trajectory.size(),

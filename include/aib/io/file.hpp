@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -43,6 +44,16 @@ class input_file {
   std::uint64_t size_ = 0;
 };
 
+/// Whether there is a folder of this name, or anything at all; not where one may not look.
+[[nodiscard]] inline bool is_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
+}
+[[nodiscard]] inline bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
 /// The whole content of a file.
 /// Throws io_error where it cannot be read, format_error where it is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path,
@@ -50,7 +61,9 @@ std::string read_file(const std::filesystem::path& path,
 
 /// Writes a file under a temporary name beside it; `commit` makes it the file in one step. Where
 /// commit is never reached, or fails, the old file stays as it was and the temporary one is
-/// removed.
+/// removed. Behind a link it is the link's target that is replaced. A device or pipe (and
+/// /dev/stdout, whatever that is) is written as it is. Throws io_error where the path is a folder,
+/// or a file that may not be written.
 class output_file {
  public:
   explicit output_file(std::filesystem::path path);
@@ -64,17 +77,30 @@ class output_file {
   void commit();
 
  private:
+  void open_beside();
   [[noreturn]] void fail(const char* doing) const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_;     ///< behind links
+  std::filesystem::path temporary_;  ///< empty: the target itself is written
   std::FILE* file_ = nullptr;
 };
 
 /// Writes a whole file in one step, see output_file.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
+namespace detail {
+
+/// A zero byte would end the name for the system, which would find another file.
+inline void check_name(const std::filesystem::path& path) {
+  if (path.native().find('\0') != std::string::npos)
+    throw io_error(path, "a name without zero bytes expected");
+}
+
+}  // namespace detail
+
 inline input_file::input_file(std::filesystem::path path) : path_(std::move(path)) {
+  detail::check_name(path_);
   // O_NONBLOCK: opening a pipe without a writer must not hang.
   const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) throw io_error(path_, message("cannot open: ", std::strerror(errno)));
@@ -115,8 +141,28 @@ inline std::string read_file(const std::filesystem::path& path, std::uint64_t ma
   return content;
 }
 
-inline output_file::output_file(std::filesystem::path path) : path_(std::move(path)) {
-  std::string name = path_.string() + ".XXXXXX";
+inline output_file::output_file(std::filesystem::path path)
+    : path_(std::move(path)), target_(path_) {
+  detail::check_name(path_);
+  struct stat status = {};
+  if (::stat(path_.c_str(), &status) != 0) {
+    open_beside();
+    return;
+  }
+  if (S_ISDIR(status.st_mode)) throw io_error(path_, "a file expected, found a folder");
+  if (::access(path_.c_str(), W_OK) != 0) fail("write");
+  if (!S_ISREG(status.st_mode) || path_.string().starts_with("/dev/")) {
+    file_ = std::fopen(path_.c_str(), "abe");
+    if (!file_) fail("write");
+    return;
+  }
+  std::error_code ignored;
+  if (auto real = std::filesystem::canonical(path_, ignored); !ignored) target_ = std::move(real);
+  open_beside();
+}
+
+inline void output_file::open_beside() {
+  std::string name = target_.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0) fail("create");
   temporary_ = name;
@@ -141,9 +187,11 @@ inline void output_file::write(const void* data, std::size_t n) {
 }
 
 inline void output_file::commit() {
-  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("write");
+  const bool is_direct = temporary_.empty();
+  if (std::fflush(file_) != 0 || (!is_direct && ::fsync(::fileno(file_)) != 0)) fail("write");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("write");
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
+  if (is_direct) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace");
   temporary_.clear();
 }
 

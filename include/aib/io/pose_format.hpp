@@ -83,9 +83,9 @@ inline std::filesystem::path folder_of_npz(const std::filesystem::path& folder) 
 
 inline std::optional<pose_format> format_of_folder(const std::filesystem::path& folder) {
   if (!find_colmap_models(folder).empty()) return pose_format::colmap;
-  if (std::filesystem::exists(folder / "camera_poses.txt")) return pose_format::da3;
-  if (std::filesystem::exists(folder / "transforms.json")) return pose_format::transforms;
-  if (std::filesystem::exists(folder / "reconstruction.json")) return pose_format::opensfm;
+  if (is_there(folder / "camera_poses.txt")) return pose_format::da3;
+  if (is_there(folder / "transforms.json")) return pose_format::transforms;
+  if (is_there(folder / "reconstruction.json")) return pose_format::opensfm;
   if (!folder_of_npz(folder).empty()) return pose_format::npz;
   return std::nullopt;
 }
@@ -165,7 +165,7 @@ inline std::optional<pose_format> format_of_extension(const std::filesystem::pat
 }  // namespace detail
 
 inline pose_format detect_pose_format(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) {
+  if (is_folder(path)) {
     if (const auto format = detail::format_of_folder(path)) return *format;
     throw format_error(path,
                        "a COLMAP model (cameras, images), camera_poses.txt, transforms.json, "

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -145,9 +146,11 @@ inline posed_images read_pose_npz(const std::filesystem::path& path,
 inline posed_images read_pose_npz_folder(const std::filesystem::path& folder,
                                          const pose_npz_options& options) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".npz") files.push_back(entry.path());
   }
+  if (error) throw io_error(folder, message("cannot list: ", error.message()));
   std::sort(files.begin(), files.end());
   posed_images all;
   for (const std::filesystem::path& file : files) {

@@ -95,7 +95,7 @@ namespace detail {
 
 /// The file that is meant where a folder is given.
 inline std::filesystem::path file_in(const std::filesystem::path& path, const char* name) {
-  return std::filesystem::is_directory(path) ? path / name : path;
+  return is_folder(path) ? path / name : path;
 }
 
 /// Reads one file in its format with the options that fit it.
@@ -144,7 +144,7 @@ class pose_reader {
   }
 
   posed_images from_colmap() const {
-    const bool folder = std::filesystem::is_directory(path_);
+    const bool folder = is_folder(path_);
     const colmap_model model =
         read_colmap(folder ? path_ : path_.parent_path(), colmap_content::cameras_and_images);
     posed_images images{model.trajectory, {}};
@@ -165,7 +165,7 @@ class pose_reader {
 #ifdef AIB_WITH_NPZ
   posed_images from_npz() const {
     const pose_npz_options npz{options_.key, options_.convention, frame().axes};
-    if (!std::filesystem::is_directory(path_)) return read_pose_npz(path_, npz);
+    if (!is_folder(path_)) return read_pose_npz(path_, npz);
     return read_pose_npz_folder(folder_of_npz(path_), npz);
   }
 #else

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/core/error.hpp>
 #include <aib/raster/view.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace aib::raster {
@@ -14,8 +16,9 @@ template <class T>
 class image {
  public:
   image() = default;
+  /// Throws argument_error where there are not so many addresses.
   image(std::size_t width, std::size_t height, T value = {})
-      : width_(width), height_(height), pixels_(width * height, value) {}
+      : width_(width), height_(height), pixels_(area(width, height), value) {}
 
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
@@ -42,6 +45,14 @@ class image {
   friend bool operator==(const image&, const image&) = default;
 
  private:
+  static std::size_t area(std::size_t width, std::size_t height) {
+    if (height != 0 && width > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(T) / height) {
+      throw argument_error(
+          message("an image of ", width, " x ", height, " pixels is larger than memory can be"));
+    }
+    return width * height;
+  }
+
   std::size_t width_ = 0;
   std::size_t height_ = 0;
   std::vector<T> pixels_;
