@@ -3,17 +3,30 @@
 //
 // Prints metrics of random data, those of clouds and depth maps to the last bit, those of poses,
 // for which Eigen multiplies with the machine's own instructions, to eleven digits. Built for
-// several instruction sets and by several compilers, the program prints the same.
+// several instruction sets, by several compilers, from the single header, and with any number of
+// threads, the program prints the same.
+//
+//   bits [THREADS | --name]
+#ifdef AIB_SINGLE
+#include <aib/aib.hpp>
+#else
 #include <aib/align/trajectory.hpp>
 #include <aib/cloud/compare.hpp>
 #include <aib/core/isa.hpp>
 #include <aib/core/random.hpp>
+#include <aib/depth/accumulate.hpp>
 #include <aib/depth/errors.hpp>
+#include <aib/mesh/offsets.hpp>
 #include <aib/pose/ape.hpp>
 #include <aib/pose/auc.hpp>
+#include <aib/sample/mesh.hpp>
+#include <aib/sample/voxel.hpp>
+#endif
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <vector>
@@ -21,6 +34,8 @@
 namespace {
 
 using namespace aib;
+
+unsigned threads = 0;
 
 void print(const char* name, double value) { std::printf("%s %a\n", name, value); }
 
@@ -57,12 +72,31 @@ std::vector<float> random_depth(random_engine& random, std::size_t n) {
 void print_clouds(random_engine& random) {
   const cloud::cloud estimate = random_cloud(random, 20011);
   const cloud::cloud truth = random_cloud(random, 15013);
-  const cloud::comparison c = cloud::compare(estimate, truth, {.tau = {0.01, 0.03}});
+  const cloud::comparison c =
+      cloud::compare(estimate, truth, {.tau = {0.01, 0.03}, .threads = threads});
   print("accuracy", c.accuracy);
   print("completeness", c.completeness);
   print("accuracy_rmse", c.accuracy_rmse);
   print("hausdorff", c.hausdorff);
   print("f_score", c.scores[1].f_score);
+}
+
+void print_points(const char* name, const cloud::cloud& c) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < c.size(); ++i) sum += static_cast<double>(i + 1) * c.position(i);
+  for (const double coordinate : sum) print(name, coordinate);
+}
+
+void print_meshes(random_engine& random) {
+  mesh::mesh tetrahedron;
+  tetrahedron.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const cloud::cloud points = random_cloud(random, 20011);
+  const auto offsets = mesh::offsets(points, tetrahedron, threads);
+  print("offset", offsets.mean());
+  print("deviation", offsets.deviation());
+  print_points("samples", sample::mesh(tetrahedron, {.n = 30000, .threads = threads}).points);
+  print_points("voxels", sample::voxel(points, {.size = 0.05, .threads = threads}));
 }
 
 void print_depth(random_engine& random) {
@@ -78,13 +112,30 @@ void print_depth(random_engine& random) {
   }
 }
 
+void print_frames(random_engine& random) {
+  const std::size_t width = 64, height = 48;
+  std::vector<depth::depth_map> maps(24);
+  for (depth::depth_map& map : maps) {
+    const auto values = random_depth(random, width * height);
+    map.values = raster::image<float>(width, height);
+    std::copy(values.begin(), values.end(), map.values.begin());
+  }
+  const auto load = [&](std::size_t i) {
+    return depth::frame{.name = "frame", .estimate = maps[2 * i], .reference = maps[2 * i + 1]};
+  };
+  const auto frames = depth::accumulate(maps.size() / 2, {.threads = threads}, load).result();
+  print("frames", frames.mean.srmse);
+  print("pooled", frames.pooled.srmse);
+}
+
 void print_poses(random_engine& random) {
   const pose::trajectory e = random_trajectory(random, 211);
   const pose::trajectory r = random_trajectory(random, 211);
   using enum pose::auc_convention;
   for (const auto convention :
        {paper, vggt, posediffusion, posediffusion_torch, da3, colmap, exact})
-    print_rounded("auc", pose::auc(e, r, {.max_deg = 90, .convention = convention}).auc);
+    print_rounded(
+        "auc", pose::auc(e, r, {.max_deg = 90, .convention = convention, .threads = threads}).auc);
   const align::alignment fit = align::trajectory(e, r);
   print_rounded("scale", fit.transform.scale);
   print_rounded("rmse", pose::ape(fit.transform * e, r).summary.rmse);
@@ -97,8 +148,11 @@ int main(int count, char** arguments) {
     std::printf("%s\n", instruction_set);
     return 0;
   }
+  if (count == 2) threads = static_cast<unsigned>(std::atoi(arguments[1]));
   random_engine random(7);
   print_clouds(random);
+  print_meshes(random);
   print_depth(random);
+  print_frames(random);
   print_poses(random);
 }
