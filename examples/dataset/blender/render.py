@@ -60,9 +60,9 @@ def prepare(options):
     here.render.engine = "CYCLES"
     cycles = here.cycles
     cycles.samples, cycles.use_adaptive_sampling = options.samples, True
-    cycles.adaptive_threshold, cycles.adaptive_min_samples = 0.03, max(8, options.samples // 4)
-    cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 4, 2, 3
-    cycles.transmission_bounces, cycles.transparent_max_bounces = 0, 8
+    cycles.adaptive_threshold, cycles.adaptive_min_samples = 0.05, max(6, options.samples // 4)
+    cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 3, 1, 3
+    cycles.transmission_bounces, cycles.transparent_max_bounces = 0, 6
     cycles.caustics_reflective = cycles.caustics_refractive = False
     cycles.sample_clamp_indirect = 3
     if options.threads:

@@ -63,6 +63,17 @@ local function railing(scene, y, from, to, height, posts)
   scene:box("rail", { from - 0.09, y - 0.055, deck + height - 0.055 }, { to + 0.09, y + 0.055, deck + height })
 end
 
+--- Panes against the wind in the middle of the span, one between each two posts.
+local function wind_screen(scene, y)
+  for k = -9, 8 do
+    local x = 66.6 / 42 * k
+    scene:box("glass", { x + 0.06, y - 0.009, deck + 0.13 }, { x + 66.6 / 42 - 0.06, y + 0.009, deck + 1.32 })
+    for _, z in ipairs { 0.3, 1.0 } do
+      scene:box("steel", { x - 0.045, y - 0.03, deck + z }, { x + 0.1, y + 0.05, deck + z + 0.07 })
+    end
+  end
+end
+
 local function floor(scene)
   scene:box("concrete", { -33.6, -4.2, deck - 0.42 }, { 33.6, 4.2, deck - 0.08 })
   scene:box("road", { -33.62, -3.5, deck - 0.2 }, { 33.62, 3.5, deck })
@@ -73,6 +84,7 @@ local function floor(scene)
     scene:box("footpath", { -33.64, math.min(inner, outer), deck - 0.3 }, { 33.64, math.max(inner, outer), deck + 0.1 })
     scene:box("panel", { -33.55, side * 7.38 - 0.11, deck - 0.62 }, { 33.55, side * 7.38 + 0.11, deck + 0.16 })
     railing(scene, side * 7.32, -33.3, 33.3, 1.15, 42)
+    wind_screen(scene, side * 7.24)
     railing(scene, side * 4.0, -31.2, 31.2, 0.78, 26)
     for k = 0, 4 do
       surroundings.street_lamp(scene, { -26 + 13 * k, side * 6.95, deck + 0.1 }, side * -90, 5.2)
