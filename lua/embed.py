@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
-"""Writes C++ that holds the text of files: embed.py ROOT FILE... > embedded.cpp"""
+"""Writes C++ that holds the text of files: embed.py SOURCES BUILD FILE... > embedded.cpp
+
+A file is named relative to the folder of the two that holds it.
+"""
 
 import pathlib
 import sys
@@ -17,8 +20,13 @@ def escaped(byte):
     return chr(byte) if plain else "\\%03o" % byte
 
 
-def main(root, paths):
-    files = {str(pathlib.Path(path).resolve().relative_to(root)): pathlib.Path(path) for path in paths}
+def name_of(path, roots):
+    path = pathlib.Path(path).resolve()
+    return next(str(path.relative_to(root)) for root in roots if path.is_relative_to(root))
+
+
+def main(roots, paths):
+    files = {name_of(path, roots): pathlib.Path(path) for path in paths}
     print('#include "shell/embedded.hpp"')
     print('#pragma GCC diagnostic ignored "-Woverlength-strings"')
     print("namespace aib::shell {")
@@ -29,4 +37,4 @@ def main(root, paths):
     print("  };\n  return files;\n}\n}  // namespace aib::shell")
 
 
-main(pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:])
+main([pathlib.Path(root).resolve() for root in sys.argv[1:3]], sys.argv[3:])

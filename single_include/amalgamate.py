@@ -36,7 +36,7 @@ FOLDERS = {
     "survey": "ground sampling distance, change and coverage",
     "render": "depth and pictures of meshes",
     "io": "readers and writers",
-    "report": "records into text, JSON, tables and plots",
+    "report": "data as the page of a report carries it",
     "stream": "drivers over files larger than memory",
 }
 

@@ -142,6 +142,18 @@ local function add_significance(report, results, labels, refused, input)
   return metrics
 end
 
+--- The frames of all files along the flight.
+local function draw_frames(report, results, labels, refused)
+  for i, result in ipairs(results) do
+    for _, frames in ipairs(result.frames or {}) do
+      if not refused[place_of(frames.metric, frames.group)] then
+        report:within(frames.group):within({ file = labels[i] }):timeline { title = frames.metric,
+          y = { label = frames.metric }, frames = frames.names, values = frames.values }
+      end
+    end
+  end
+end
+
 local function significance_table(report, metrics)
   if #metrics == 0 then return end
   local columns = {}
@@ -261,6 +273,7 @@ return aib.protocol {
     end
     report:note(("%d of %d numbers are equal"):format(equal, compared))
     significance_table(report, add_significance(report, results, labels, refused, input))
+    draw_frames(report, results, labels, refused)
     if input.ranks then
       for i, result in ipairs(results) do add_ranks(report, result, labels[i]) end
       rank_table(report)

@@ -76,6 +76,7 @@ return aib.protocol {
     for _, label in ipairs(errors:labels()) do
       add_errors(errors:of_label(label), input, report:within { label = names[label] or ("%d"):format(label) })
     end
+    depth_frames.draw(errors, frames, options, report)
     depth_frames.write(errors, frames, options, input)
   end,
 }

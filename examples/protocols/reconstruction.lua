@@ -6,6 +6,7 @@
 ---
 ---   aib-lua reconstruction estimate.ply reference.ply --tau 0.02,0.05
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 --- A mesh where the file holds one, else nil and the cloud.
 local function read_reference(path)
@@ -90,6 +91,14 @@ local function write_errors(estimate, mesh, points, input)
   })
 end
 
+--- Curves and geometry for the page.
+local function draw(estimate, mesh, points, input, report)
+  if not report:draws() then return end
+  local to_reference = mesh and aib.mesh.distances(estimate, mesh) or aib.cloud.distances(estimate, points)
+  drawings.points(report, estimate, { reference = points, mesh = mesh }, to_reference,
+    aib.cloud.distances(points, estimate), #input.tau > 0 and input.tau or { 2 * to_reference:median() })
+end
+
 local function add_normals(estimate, points, report)
   local function with_normals(cloud) return cloud.has_normals and cloud or aib.cloud.with_normals(cloud) end
   local n = aib.cloud.normal_consistency(with_normals(estimate), with_normals(points))
@@ -163,6 +172,7 @@ return aib.protocol {
     local compared = mesh and aib.mesh.compare(estimate, mesh, options) or aib.cloud.compare(estimate, points, options)
     add_comparison(compared, input, report)
     if input.labels then add_labels(estimate, mesh, points, options, input, report) end
+    draw(estimate, mesh, points, input, report)
     if input.errors_to ~= "" then write_errors(estimate, mesh, points, input) end
     if input.normals then add_normals(estimate, points, report) end
   end,

@@ -10,6 +10,7 @@
 --- The official RANSAC is not seeded; this one is (--seed). Where precision and recall are 0 the official script
 --- divides by zero; here the F-score is 0.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 --- Thresholds of the scenes, metres.
 local scenes <const> = {
@@ -126,6 +127,7 @@ return aib.protocol {
     estimate, reference = prepared(transform * estimate), prepared(reference)
     local to_reference, to_estimate = aib.cloud.distances_both_ways(estimate, reference)
     local c = aib.cloud.score(to_reference, to_estimate, { tau = tau })
+    drawings.points(report, estimate, { reference = reference }, to_reference, to_estimate, { tau })
     local options = { tau = tau, voxel = voxel, icp = input.icp }
     for _, name in ipairs { "precision", "recall", "f_score" } do
       report:add("tnt." .. name, c[name][tau], { better = "higher", n = c.n_estimate, options = options })

@@ -5,6 +5,7 @@
 ---
 ---   aib-lua trajectory --estimate orb.txt,dso.txt --reference truth.txt --align sim3
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local trajectories = require "aib.trajectories"
 
 local statistics <const> = { "rmse", "mean", "median", "std", "min", "max" }
@@ -30,6 +31,7 @@ local function score(estimate, input)
     outlier_factor = input.outlier_factor > 0 and input.outlier_factor or nil,
   })
   if not est then return end
+  drawings.trajectory(cell, est, ref)
   add_errors(cell, "ape", function() return aib.pose.ape(est, ref, { relation = input.relation }) end,
     input.relation, { align = input.align, relation = input.relation })
   local pairs_of_frames = { relation = input.relation, delta = input.delta, unit = input.unit,

@@ -7,6 +7,7 @@
 ---   local errors = depth_frames.evaluate(frames, { align = "median" })
 ---   depth_frames.report(errors:result(), report, { metrics = { "abs_rel" }, convention = "mean over frames" })
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
 
 local M = {}
@@ -185,6 +186,24 @@ function M.write_sheet(path, records, files, options)
     pictures[i] = aib.depth.error_image(est, ref, { transform = { scale = record.scale, shift = record.shift } })
   end
   aib.io.write_image(path, aib.raster.contact_sheet(pictures, { columns = 1, width = 960 }))
+end
+
+--- Shows errors along the frames, and some frames, in the page of a report that has one.
+function M.draw(errors, frames, options, report)
+  if not report:draws() then return end
+  local records, by_name, names = errors:frames(), {}, {}
+  drawings.depth_series(report, records)
+  for i, frame in ipairs(frames) do by_name[frame.name], names[i] = frame, frame.name end
+  local chosen = drawings.chosen(names)
+  for _, record in ipairs(records) do
+    local frame = chosen[record.name] and record.srmse and by_name[record.name]
+    if frame then
+      local est <close> = aib.io.read_depth(frame.estimate, options.estimate)
+      local ref <close> = aib.io.read_depth(frame.reference, { scale = options.reference.scale, width = est.width,
+        height = est.height, rule = options.rule })
+      drawings.frame(report, chosen, record.name, est, ref, { scale = record.scale, shift = record.shift })
+    end
+  end
 end
 
 --- Writes what the inputs ask for beside the report. `errors` is an aib.Accumulator over `frames`.

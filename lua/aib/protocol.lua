@@ -77,13 +77,15 @@ local function state_inputs(report, list, values)
       end
     end
     if kind ~= "folder" and kind ~= "path" then report.store.inputs[input.key] = value end
+    if kind == "folder" then table.insert(report.store.places, inputs.label(input)) end
   end
 end
 
 --- Runs the protocol over inputs by name and returns the report. Errors of the script pass; where a metric that the
---- script did not guard is undefined, the report ends there with a note.
-function protocol:run(values)
+--- script did not guard is undefined, the report ends there with a note. options.draw: with what a page shows.
+function protocol:run(values, options)
   local report = new_report { name = self.name, title = self.title, cite = self.cite, version = aib.version }
+  if options and options.draw then report:draw() end
   local function wrong(sentence) failure.raise("argument", self.name .. ": " .. sentence) end
   local input = inputs.complete(self.inputs, values or {}, wrong)
   state_inputs(report, self.inputs, input)
@@ -114,7 +116,7 @@ function protocol:main(arguments)
   local ok, caught = xpcall(function()
     call = command_line.parse(self, arguments)
     progress.quiet = progress.quiet or call.quiet
-    if not call.help then report = self:run(call.inputs) end
+    if not call.help then report = self:run(call.inputs, { draw = call.outputs.html ~= nil }) end
   end, traced)
   if not ok then return explain(self, caught) end
   if call.help then

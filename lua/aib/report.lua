@@ -6,9 +6,16 @@
 local failure = require "aib.failure"
 local grids = require "aib.report.grid"
 local suggest = require "aib.suggest"
+local views = require "aib.report.views"
 
 local report = {}
 report.__index = report
+
+-- What a page draws: report:curve, report:cloud, ...
+for name, method in pairs(views) do report[name] = method end
+
+--- aib.report.plot is loaded where it is used first.
+setmetatable(report, { __index = function(_, name) return name == "plot" and require "aib.report.plot" or nil end })
 
 local directions <const> = { lower = true, higher = true }
 
@@ -19,7 +26,8 @@ local add_fields <const> = {
 
 --- A new report. info = { name=, title=, cite=, version= }
 function report.new(info)
-  local store = { records = {}, notes = {}, tables = {}, conventions = {}, inputs = {}, sources = {}, noted = {} }
+  local store = { records = {}, notes = {}, tables = {}, conventions = {}, inputs = {}, sources = {}, places = {},
+    noted = {} }
   return setmetatable({
     name = info.name, title = info.title or info.name, cite = info.cite, version = info.version,
     group = {}, store = store,

@@ -74,9 +74,10 @@ local function is_untouched(job, file)
   return aib.system.is_file(path) and aib.system.status(path) == file.status
 end
 
---- The kept part of a unit, nil where there is none, it is of another run, or a file of it was touched.
+--- The kept part of a unit, nil where there is none, it is of another run, or a file of it was touched; or where a page
+--- is to be drawn, whose geometry and pictures are not kept.
 local function kept(job, unit, key)
-  if not job.results then return nil end
+  if not job.results or job.report:draws() then return nil end
   local path = path_of(job, unit)
   if not aib.system.is_file(path) then return nil end
   local ok, part = pcall(function() return aib.json.decode(aib.system.read_text(path), path) end)
@@ -91,6 +92,7 @@ local function new_part(job, unit, key)
   local part = {
     frames = {}, report = aib.report.new { name = job.report.name, version = job.report.version },
   }
+  part.report.store.views = job.report.store.views
   local read = job.evaluate(unit, part)
   return {
     format = format_version, key = key, name = job.name(unit), group = job.group(unit), files = list_files(read),

@@ -71,7 +71,7 @@ Notes
     t:contains(require("aib.report.latex")(report), "B & \\textbf{0.200} {\\scriptsize (75.0 \\%, 7)} &")
     t:contains(require("aib.report.latex")(report), "\\multicolumn{2}{c}{office}")
     t:contains(require("aib.report.latex")(report), "\\caption{Depth (m) $\\downarrow$}")
-    t:contains(require("aib.report.html")(report), "<td><b>0.200</b> <small>75.0 %, 7</small></td>")
+    t:contains(require("aib.report.html")(report), "><b>0.200</b> <small>75.0 %, 7</small></td>")
   end,
 
   ["equal values are equally good, and one value alone is not the best"] = function(t)

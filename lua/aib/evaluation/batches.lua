@@ -100,7 +100,7 @@ local function score_batch_depth(fit, truth, how, input, cell, frames)
     local own = aib.depth.accumulate { transform = { scale = scale or 1 } }
     for i, name in ipairs(part.batch.names) do
       local est <close> = has_truth[name] and part.batch.depth(i) or nil
-      if est then depth.add_frame(own, gsd, name, est, scale, truth, input) end
+      if est then depth.add_frame(own, gsd, name, est, scale, truth, input, cell) end
     end
     all:merge(own)
     if scale then scaled:merge(own) end

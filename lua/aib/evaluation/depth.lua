@@ -3,6 +3,7 @@
 
 --- Depth maps of a method, for the protocol asset_inspection.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local with = require "aib.evaluation.with"
 
 local M = {}
@@ -19,11 +20,14 @@ local gsd_taus <const> = { 1, 2, 5 }
 local strata <const> = { "inside", "edge", "thin" }
 
 --- Adds a frame's errors to an accumulator; the truth is brought to the method's size, never the other way. Shares
---- within some ground sampling distances go to `gsd`, by tau, where the scale is known.
-function M.add_frame(errors, gsd, name, est, scale, truth, input)
+--- within some ground sampling distances go to `gsd`, by tau, where the scale is known. A page shows the frame in
+--- `cell`.
+function M.add_frame(errors, gsd, name, est, scale, truth, input, cell)
   local full <close> = truth.depth(name)
   local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
   errors:add(est, ref, { name = name, labels = input.details and aib.depth.strata(ref) or nil })
+  truth.drawn = truth.drawn or drawings.chosen(truth.depth_names)
+  drawings.frame(cell, truth.drawn, name, est, ref, { scale = scale or 1, shift = 0 })
   local camera = input.details and scale and (truth.cameras or {})[name]
   if not camera then return end
   local ok, surface = pcall(aib.depth.surface_errors, est, ref, camera, {
@@ -74,6 +78,7 @@ function M.add_depth(errors, scaled, gsd, truth, how_scaled, input, cell, frames
   local empty = #errors - mean.n_defined
   if empty > 0 then cell:note(("depth: %d of %d frames have no valid pixel"):format(empty, #errors)) end
   local kept = { names = aib.json.list(), values = aib.json.list() }
+  drawings.depth_series(cell, errors:frames())
   for _, frame in ipairs(errors:frames()) do
     if frame.srmse then
       kept.names[#kept.names + 1], kept.values[#kept.values + 1] = frame.name, frame.srmse
@@ -88,7 +93,7 @@ function M.score_depth(unit, truth, files, frame, input, cell, frames)
   local gsd = {}
   for _, name in ipairs(files:present(unit.result.depth, truth.depth_names)) do
     local est <close> = aib.io.read_depth(files:frame(unit.result.depth, name))
-    M.add_frame(errors, gsd, name, est, frame.scale, truth, input)
+    M.add_frame(errors, gsd, name, est, frame.scale, truth, input, cell)
   end
   M.add_depth(errors, frame.scale and errors, gsd, truth, frame.how, input, cell, frames)
 end

@@ -3,6 +3,7 @@
 
 --- Points of a method against the true surface, for the protocol asset_inspection.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local with = require "aib.evaluation.with"
 
 local M = {}
@@ -42,7 +43,9 @@ end
 function M.add_cloud(all, truth, frame_how, input, cell)
   local cloud = aib.scene.cropped(truth, all)
   local compared = cell:attempt(function()
-    return aib.cloud.compare(cloud, truth.reference, { tau = input.tau })
+    local to_reference, to_estimate = aib.cloud.distances_both_ways(cloud, truth.reference)
+    drawings.points(cell, cloud, truth, to_reference, to_estimate, input.tau)
+    return aib.cloud.score(to_reference, to_estimate, { tau = input.tau })
   end, "points") or { precision = {}, recall = {}, f_score = {} }
   local sampled = not truth.points
   local how = with(frame_how, { samples = sampled and input.samples or nil, seed = sampled and input.seed or nil })

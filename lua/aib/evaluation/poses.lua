@@ -3,6 +3,7 @@
 
 --- Poses and intrinsics of a method's models, for the protocol asset_inspection.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 local M = {}
 
@@ -45,6 +46,7 @@ local function score_angles(model, truth, input, cell)
     local how = { better = "higher", n = auc.n_pairs, convention = input.auc }
     cell:add("pose.auc30", auc.auc, how)
     cell:add("pose.auc30_signed", auc.auc_signed, how)
+    drawings.pose_recall(cell, auc, model.est, model.ref)
     cell:add("pose.n_zero_baseline", auc.n_zero_baseline, { n = auc.n_pairs })
     if input.auc == "paper" then  -- of both errors at once: at most what the paper counts of each
       local joint = aib.pose.auc(est, ref, { convention = "exact" })
@@ -69,6 +71,7 @@ local function score_model(model, truth, input, cell)
   cell:add("pose.n_points", #model.points)
   score_angles(model, truth, input, cell)
   score_alignment(model, cell)
+  drawings.cameras(cell, model, truth, registration)
   if not model.cameras then return end
   cell:add("camera.focal_mre", function()
     return aib.pose.focal_error(model.cameras, truth.cameras, { over = "views" }).mre

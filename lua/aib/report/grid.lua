@@ -15,7 +15,9 @@
 --- A grid, which every format writes in its own way, is
 ---   title, notes, columns = count
 ---   header   levels from the top, each a list of { text =, span = }
----   rows     each { label = text, cells ... }; a cell is { text =, best = true|nil, aside = text|nil }
+---   rows     each { label = text, group = table, cells ... }; a cell is { text =, best = true|nil, second = true|nil,
+---            aside = text|nil, record = record|nil }
+--- A head of a level has a group, too: what all records below it have in common.
 local number = require "aib.report.number"
 local suggest = require "aib.suggest"
 
@@ -150,19 +152,31 @@ local function drawing(spec, records, cells)
   return self
 end
 
---- Marks the best of some records, and those that read the same; one alone is not the best of anything.
-local function mark_best(records, cells, draw)
-  local best, count = nil, 0
+--- The text of the best of the records that compete and do not read as `but`; nil where there is none.
+local function best_text(records, draw, but)
+  local best
   for _, record in pairs(records) do
-    if has_value(record) then count = count + 1 end
-    if draw.competes(record) then
+    if draw.competes(record) and draw.value(record) ~= but then
       local sign = record.better == "lower" and 1 or -1
       if not best or sign * record.value < sign * best.value then best = record end
     end
   end
-  if not best or count < 2 then return end
+  return best and draw.value(best)
+end
+
+--- Marks the best of some records, those that read the same, and the second best; one alone is not the best of
+--- anything.
+local function mark_best(records, cells, draw)
+  local count = 0
+  for _, record in pairs(records) do
+    if has_value(record) then count = count + 1 end
+  end
+  local best = count > 1 and best_text(records, draw)
+  if not best then return end
+  local second = count > 2 and best_text(records, draw, best)
   for i, record in pairs(records) do
-    cells[i].best = draw.competes(record) and cells[i].text == draw.value(best) or nil
+    cells[i].best = draw.competes(record) and cells[i].text == best or nil
+    cells[i].second = draw.competes(record) and cells[i].text == second or nil
   end
 end
 
@@ -203,6 +217,15 @@ local function label_of(keys, tuple, spec, records)
   return table.concat(parts, " / ")
 end
 
+--- The group that the first `n` of a tuple's texts say.
+local function group_of(keys, tuple, n)
+  local group = {}
+  for i = 1, n do
+    if keys[i] ~= "metric" and tuple[i] ~= "" then group[keys[i]] = tuple[i] end
+  end
+  return group
+end
+
 --- Levels of the header, columns with the same text above them joined; levels without text are left out.
 local function header_of(spec, columns, records)
   local levels = {}
@@ -214,7 +237,7 @@ local function header_of(spec, columns, records)
       if path == above then
         level[#level].span = level[#level].span + 1
       else
-        level[#level + 1] = { text = text, span = 1 }
+        level[#level + 1] = { text = text, span = 1, group = group_of(spec.across, tuple, depth) }
       end
       if text ~= "" then texts = texts + 1 end
       above = path
@@ -239,8 +262,11 @@ function M.build(spec, report)
   local draw = drawing(spec, records, cells)
   local grid = { title = spec.title, rows = {}, columns = #columns, notes = {} }
   for r, tuple in ipairs(rows) do
-    local row = { label = label_of(spec.down, tuple, spec, records) }
-    for c = 1, #columns do row[c] = { text = draw.value(cells[r][c]), aside = draw.aside(cells[r][c]) } end
+    local row = { label = label_of(spec.down, tuple, spec, records), group = group_of(spec.down, tuple, #tuple) }
+    for c = 1, #columns do
+      local record = cells[r][c]
+      row[c] = { text = draw.value(record), aside = draw.aside(record), record = record }
+    end
     grid.rows[r] = row
   end
   if #rows > 0 then mark_all(spec, rows, cells, grid.rows, draw) end

@@ -27,8 +27,9 @@ local protocol = {}
 
 ---Runs over inputs by name and returns what was found.
 ---@param inputs? table
+---@param options? { draw: boolean }  # with what a page shows
 ---@return aib.Report
-function protocol:run(inputs) end
+function protocol:run(inputs, options) end
 
 ---Runs as a program: prints the report, writes the files that were asked for.
 ---@param arguments string[]

@@ -68,6 +68,49 @@ function instance:table(spec) end
 ---@return table[]
 function instance:records() end
 
+---@class aib.report.Axis
+---@field label? string
+---@field unit? string
+---@field scale? "linear"|"log"
+---@field low? number  # with high: the bounds, else those of the data
+---@field high? number
+
+---Whether a page was asked for. Only then do the functions below do something: what is dear to compute for them alone
+---is computed where this holds.
+---@return boolean
+function instance:draws() end
+
+---Asks for what a page draws; `--html` does.
+function instance:draw() end
+
+---A line of a figure. Lines of one title, whose groups differ in the method alone, share a figure.
+---@param spec { title: string, x: aib.report.Axis, y: aib.report.Axis, at: number[], values: number[], label?: string, text?: string, steps?: boolean }
+function instance:curve(spec) end
+
+---Numbers of frames along the flight; a click opens the frame where there is one.
+---@param spec { title: string, y: aib.report.Axis, frames: string[], values: number[], label?: string, text?: string }
+function instance:timeline(spec) end
+
+---A value with its interval; those of one title share a figure. Records "x", "x_low" and "x_high" are drawn without.
+---@param spec { title: string, value: number, low: number, high: number, unit?: string, label?: string, text?: string }
+function instance:interval(spec) end
+
+---Estimate, truth and relative error of a frame, at most 240 columns of each.
+---@param spec { name: string, estimate: aib.DepthMap, reference: aib.DepthMap, transform?: aib.Affine, errors?: table<string, number> }
+function instance:frame(spec) end
+
+---Points in space, at most `limit` (100 000), in the colours of one value each.
+---@param spec { role: "estimate"|"reference", cloud: aib.Cloud, values?: aib.Distances|aib.Offsets|number[], label?: string, unit?: string, limit?: integer }
+function instance:cloud(spec) end
+
+---A mesh in space, with values of its faces.
+---@param spec { mesh: aib.Mesh, faces?: { label: string, unit: string, values: number[] }[] }
+function instance:mesh(spec) end
+
+---Cameras in space, joined by name to the true ones; those in `missing` are marked.
+---@param spec { estimate: aib.Trajectory, reference: aib.Trajectory, missing?: string[], errors?: table<string, number> }
+function instance:cameras(spec) end
+
 ---A new report.
 ---@param info table  # name, title, cite, version
 ---@return aib.Report

@@ -1,0 +1,165 @@
+-- SPDX-FileCopyrightText: the aib authors
+-- SPDX-License-Identifier: MIT
+
+--- What the pages of protocols show beside their tables. Nothing here is computed unless a page was asked for.
+local aib = require "aib"
+
+local M = {}
+
+--- Sub-models are told in numbers alone.
+local function is_drawn(cell) return cell:draws() and not cell.group.model end
+
+local share_axis <const> = { label = "share of pairs", low = 0, high = 1 }
+
+--- Recall of relative rotations, directions and both against the angle.
+function M.pose_recall(cell, auc, est, ref)
+  if not is_drawn(cell) then return end
+  local edges = {}
+  for tau = 1, auc.max_deg do edges[tau] = tau end
+  local counts = aib.pose.pair_histogram(est, ref, { rotation = edges, translation = edges })
+  local angles, recall = { 0 }, { rotation = { 0 }, direction = { 0 }, both = { 0 } }
+  local below = 0
+  for tau = 1, auc.max_deg do
+    for k = 1, tau do
+      below = below + counts.counts[tau][k]
+      if k < tau then below = below + counts.counts[k][tau] end
+    end
+    angles[tau + 1] = tau
+    recall.rotation[tau + 1], recall.direction[tau + 1] = auc.rra[tau], auc.rta[tau]
+    recall.both[tau + 1] = below / counts.n_pairs
+  end
+  for _, part in ipairs { "rotation", "direction", "both" } do
+    cell:curve { title = ("Relative poses, recall of %s"):format(part == "both" and "rotation and direction" or part),
+      x = { label = "threshold", unit = "deg", low = 0, high = auc.max_deg }, y = share_axis, at = angles,
+      values = recall[part], text = "Share of frame pairs that are off by less than the threshold." }
+  end
+end
+
+--- Positions of poses in space and their errors along the way; names are those of the frames, or their places. The
+--- estimate is aligned to the reference and paired with it.
+function M.trajectory(cell, est, ref)
+  if not cell:draws() then return end
+  local names, errors = {}, {}
+  local ape = aib.pose.ape(est, ref)
+  for i, place in ipairs(ape.index) do
+    names[i] = ref.names[place] or ("%06d"):format(place)
+    errors[names[i]] = ape.errors[i]
+  end
+  cell:timeline { title = "Position, error along the way", y = { label = "APE", unit = "m" }, frames = names,
+    values = ape.errors }
+  cell:cameras { estimate = est, reference = ref, errors = errors }
+end
+
+--- Cameras in space and their errors along the flight.
+function M.cameras(cell, model, truth, registration)
+  if not is_drawn(cell) or not model.alignment then return end
+  local transform = model.alignment.transform
+  local ape = aib.pose.ape(transform * model.est, model.ref)
+  local names, errors = {}, {}
+  for i, place in ipairs(ape.index) do
+    names[i] = model.ref.names[place]
+    errors[names[i]] = ape.errors[i]
+  end
+  cell:timeline { title = "Camera position, error along the flight", y = { label = "APE", unit = "m" }, frames = names,
+    values = ape.errors }
+  cell:cameras { estimate = transform * model.trajectory, reference = truth.trajectory,
+    missing = registration.missing, errors = errors }
+  if truth.mesh then cell:mesh { mesh = truth.mesh } end
+end
+
+local most_frames <const> = 60
+
+--- The names whose frames a page has: all, or so many, evenly spread.
+function M.chosen(names)
+  local set, stride = {}, math.max(1, #names / most_frames)
+  for k = 0, math.min(#names, most_frames) - 1 do set[names[math.floor(k * stride) + 1]] = true end
+  return set
+end
+
+--- A frame's panels, where `chosen` has its name.
+function M.frame(cell, chosen, name, est, ref, transform)
+  if not cell or not cell:draws() or not chosen[name] then return end
+  cell:attempt(function() cell:frame { name = name, estimate = est, reference = ref, transform = transform } end)
+end
+
+--- Errors and coverage of depth along the flight.
+function M.depth_series(cell, frames)
+  if not cell:draws() then return end
+  for _, series in ipairs {
+    { "srmse", "Depth, sRMSE along the flight", { label = "sRMSE" } },
+    { "coverage", "Depth, coverage along the flight", { label = "coverage", low = 0, high = 1 } },
+  } do
+    local names, values = {}, {}
+    for _, frame in ipairs(frames) do
+      if frame[series[1]] then names[#names + 1], values[#values + 1] = frame.name, frame[series[1]] end
+    end
+    if #names > 0 then
+      cell:timeline { title = series[2], y = series[3], frames = names, values = values }
+    end
+  end
+end
+
+local n_taus <const> = 40
+
+--- Thresholds in equal ratios.
+local function taus_between(low, high)
+  local taus = {}
+  for i = 1, n_taus do taus[i] = low * (high / low) ^ ((i - 1) / (n_taus - 1)) end
+  return taus
+end
+
+local function shares(distances, taus)
+  local list = {}
+  for i, tau in ipairs(taus) do list[i] = distances:share_below(tau) end
+  return list
+end
+
+local function harmonic(a, b)
+  local list = {}
+  for i, x in ipairs(a) do list[i] = x + b[i] > 0 and 2 * x * b[i] / (x + b[i]) or 0 end
+  return list
+end
+
+local n_bins <const> = 50
+
+--- Densities of distances up to a bound, at the right ends of their bins.
+local function histogram(cell, title, distances, high)
+  local h = distances:histogram { max = high, bins = n_bins }
+  local at, values = { 0 }, { 0 }
+  for i, count in ipairs(h.counts) do at[i + 1], values[i + 1] = i * h.width, count / #distances end
+  cell:curve { title = title, x = { label = "distance", unit = "m" }, y = { label = "share of points" }, at = at,
+    values = values, steps = true, text = ("%d bins up to %g m."):format(n_bins, high) }
+end
+
+--- Enough to colour faces by; the numbers of the tables are of all samples.
+local n_face_samples <const> = 20000
+
+--- Precision, recall and F-score against the threshold, histograms, and the geometry in the colours of its errors.
+--- `taus` are the protocol's thresholds.
+function M.points(cell, cloud, truth, to_reference, to_estimate, taus)
+  if not cell:draws() then return end
+  local middle = math.max(taus[#taus // 2 + 1] or 0.05, 1e-9)
+  local at = taus_between(middle / 20, middle * 20)
+  local precision, recall = shares(to_reference, at), shares(to_estimate, at)
+  local f_score = harmonic(precision, recall)
+  for _, curve in ipairs { { "Precision", precision }, { "Recall", recall }, { "F-score", f_score } } do
+    cell:curve { title = curve[1] .. " against the threshold", x = { label = "threshold", unit = "m", scale = "log" },
+      y = { label = curve[1]:lower(), low = 0, high = 1 }, at = at, values = curve[2] }
+  end
+  histogram(cell, "Accuracy, histogram", to_reference, 10 * middle)
+  histogram(cell, "Completeness, histogram", to_estimate, 10 * middle)
+  cell:cloud { role = "estimate", cloud = cloud, values = to_reference, label = "distance to the truth", unit = "m" }
+  cell:cloud { role = "reference", cloud = truth.reference, values = to_estimate, label = "distance to the estimate",
+    unit = "m", limit = 50000 }
+  if not truth.mesh then return end
+  local faces = {}
+  if not truth.points then
+    local samples = aib.cloud.random_subset(truth.reference, n_face_samples)
+    local scores = aib.mesh.face_scores(cloud, truth.mesh, { samples = samples })
+    faces = { { label = "completeness", unit = "m", values = scores.completeness },
+      { label = "accuracy", unit = "m", values = scores.accuracy } }
+  end
+  cell:mesh { mesh = truth.mesh, faces = faces }
+end
+
+return M
