@@ -5,38 +5,21 @@
 #include <aib/cloud/cloud.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
-#include <aib/math/camera.hpp>
-#include <aib/math/projection.hpp>
-#include <aib/math/rigid3.hpp>
+#include <aib/math/view.hpp>
 #include <aib/mesh/ray_surface.hpp>
 #include <aib/render/hits.hpp>
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 namespace aib::render {
 
-/// A camera where it stands.
-struct view {
-  math::camera camera;
-  math::rigid3 world_from_camera;
-};
-
-/// Whether a point lies in the image of a view, whatever may be before it. A pose that is not
-/// finite sees nothing.
-[[nodiscard]] inline bool is_in_image(const view& v, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d offset = point - v.world_from_camera.translation;
-  const auto pixel = math::project(v.camera, v.world_from_camera.rotation.transpose() * offset);
-  return pixel && pixel->x() >= 0 && pixel->y() >= 0 &&
-         pixel->x() <= static_cast<double>(v.camera.width) &&
-         pixel->y() <= static_cast<double>(v.camera.height);
-}
+using math::is_in_image;
+using math::view;
 
 struct visible_options {
   double tolerance = 0.001;  ///< what is nearer than a point by a smaller share of its distance
@@ -64,13 +47,14 @@ inline namespace AIB_ISA {
                                                         std::span<const view> views,
                                                         const visible_options& options = {}) {
   std::vector<std::uint32_t> n(points.size());
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
   for_each_chunk(points.size(), 64, options.cast.threads, options.cast.control,
                  [&](const chunk& c) {
                    for (std::size_t i = c.begin; i < c.end; ++i) {
                      const Eigen::Vector3d p = points.position(i);
-                     for (const view& v : views) {
-                       if (!is_in_image(v, p)) continue;
-                       const Eigen::Vector3d& from = v.world_from_camera.translation;
+                     for (std::size_t k = 0; k < views.size(); ++k) {
+                       if (!cones[k].may_contain(p) || !is_in_image(views[k], p)) continue;
+                       const Eigen::Vector3d& from = views[k].world_from_camera.translation;
                        const double tolerance = options.tolerance * (p - from).norm();
                        n[i] += surface.sees(from, p, tolerance) ? 1u : 0u;
                      }
@@ -93,8 +77,15 @@ inline namespace AIB_ISA {
     throw argument_error(message("render::free_space: ", points.size(), " points, ",
                                  distances.size(), " distances: one of each expected"));
   }
-  const auto looks_through = [&](const view& v, const Eigen::Vector3d& p) {
-    return is_in_image(v, p) && surface.sees(v.world_from_camera.translation, p, 0);
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  const auto is_looked_through = [&](const Eigen::Vector3d& p) {
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (cones[k].may_contain(p) && is_in_image(views[k], p) &&
+          surface.sees(views[k].world_from_camera.translation, p, 0)) {
+        return true;
+      }
+    }
+    return false;
   };
   std::vector<space_verdict> verdicts(points.size(), space_verdict::hidden);
   for_each_chunk(points.size(), 64, options.cast.threads, options.cast.control,
@@ -103,8 +94,7 @@ inline namespace AIB_ISA {
                      const Eigen::Vector3d p = points.position(i);
                      if (static_cast<double>(distances[i]) <= options.tolerance)
                        verdicts[i] = space_verdict::surface;
-                     else if (std::any_of(views.begin(), views.end(),
-                                          [&](const view& v) { return looks_through(v, p); }))
+                     else if (is_looked_through(p))
                        verdicts[i] = space_verdict::free;
                    }
                  });
