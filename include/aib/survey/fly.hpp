@@ -1,0 +1,315 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/core/error.hpp>
+#include <aib/math/rigid3.hpp>
+#include <aib/math/rotation.hpp>
+#include <aib/mesh/distances.hpp>
+#include <aib/mesh/ray_surface.hpp>
+#include <aib/pose/trajectory.hpp>
+#include <aib/survey/flight_path.hpp>
+#include <aib/survey/lens.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aib::survey {
+
+/// What happens to poses that are too near to the mesh.
+enum class clearance_rule {
+  push,    ///< they are moved away
+  refuse,  ///< the plan is
+};
+
+/// Where the camera looks.
+enum class aim_rule {
+  path,    ///< as the path says
+  normal,  ///< along the normal of the surface that it would see, where it sees one
+};
+
+/// What a flight keeps away from and looks at.
+struct flight_space {
+  const mesh::surface_index& distance;  ///< for the distance
+  const mesh::ray_surface& sight;       ///< for the aim
+};
+
+struct fly_options {
+  double overlap = 0.8;                    ///< of frames along the path, 0 .. 1
+  std::optional<std::size_t> frames = {};  ///< instead: exactly as many
+  double min_distance = 0;                 ///< to the mesh; 0: nobody looks
+  clearance_rule clearance = clearance_rule::push;
+  aim_rule aim = aim_rule::path;
+  double speed = 2;                                    ///< m/s, gives the stamps
+  double gimbal_rate = 60 / math::degrees_per_radian;  ///< radians/s: largest turn of the view
+  /// Name of the image of a frame, counted from 0.
+  std::function<std::string(std::size_t)> name = [](std::size_t i) {
+    const std::string digits = std::to_string(i);
+    return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits + ".png";
+  };
+};
+
+struct flight_plan {
+  pose::trajectory trajectory = {};  ///< with names and stamps
+  math::camera camera = {};
+  double step = 0;            ///< mean distance between frames along the path
+  double overlap = 0;         ///< of neighbouring frames on a wall at the stand-off
+  double overlap_across = 1;  ///< of neighbouring rows, likewise
+  double length = 0;
+  double duration_s = 0;
+  double gsd = 0;  ///< at the stand-off
+  std::size_t n_pushed = 0;
+  double largest_push = 0;
+  std::optional<double> min_distance = {};  ///< of frames and of the way between, to the mesh
+  std::size_t min_distance_frame = 0;       ///< at or behind which that is
+  std::size_t n_gimbal_limited = 0;         ///< frames whose view lags behind
+};
+
+namespace detail {
+
+/// A path measured in frames: how many frame widths, or heights, the image moves.
+class frame_scale {
+ public:
+  explicit frame_scale(const flight_path& path) : path_(path) {
+    const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
+    double sum = 0;
+    for (std::size_t l = 0; l < path.legs.size(); ++l) {
+      for (std::size_t i = 0; i < n_parts; ++i) {
+        parts_.push_back({l, static_cast<double>(i) / n_parts, sum});
+        sum += moved(path.legs[l], i, frame);
+      }
+    }
+    total_ = sum;
+  }
+
+  [[nodiscard]] double total() const { return total_; }
+
+  /// The pose where the image has moved as far.
+  [[nodiscard]] math::rigid3 at(double frames) const {
+    const auto behind = std::upper_bound(parts_.begin() + 1, parts_.end(), frames,
+                                         [](double f, const part& p) { return f < p.begin; });
+    const part& p = *(behind - 1);
+    const double end = behind == parts_.end() ? total_ : behind->begin;
+    const double share = end > p.begin ? (frames - p.begin) / (end - p.begin) : 0;
+    return path_.legs[p.leg].at(p.share + std::clamp(share, 0.0, 1.0) / n_parts);
+  }
+
+ private:
+  static constexpr std::size_t n_parts = 16;
+  struct part {
+    std::size_t leg;
+    double share;
+    double begin;
+  };
+
+  static double moved(const leg& l, std::size_t i, const wall_frame& frame) {
+    const auto share = [](double k) { return k / n_parts; };
+    const auto k = static_cast<double>(i);
+    const Eigen::Matrix3d axes = l.at(share(k + 0.5)).rotation;
+    const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
+    const double straight = way.norm();
+    // A chord is shorter than its arc.
+    const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
+    const double right = std::abs(axes.col(0).dot(way)), down = std::abs(axes.col(1).dot(way));
+    const double ahead = std::abs(axes.col(2).dot(way));
+    return arc * ((right + ahead) / frame.width + down / frame.height);
+  }
+
+  const flight_path& path_;
+  std::vector<part> parts_;
+  double total_ = 0;
+};
+
+/// Keeps away from a mesh.
+class clearance {
+ public:
+  clearance(const mesh::surface_index& surface, double least) : surface_(surface), least_(least) {}
+
+  struct nearest {
+    Eigen::Vector3d point;
+    double distance;
+  };
+  [[nodiscard]] nearest nearest_to(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d in_tree = p - surface_.origin();
+    const Eigen::Vector3f coarse = in_tree.cast<float>();
+    const auto found = surface_.tree().nearest(coarse, 0);
+    const auto on = search::nearest_on_triangle(in_tree, surface_.tree().triangle(found.place));
+    return {on.position + surface_.origin(), (on.position - in_tree).norm()};
+  }
+
+  /// The place nearby that is far enough from everything; nothing where there is none.
+  [[nodiscard]] std::optional<Eigen::Vector3d> pushed(Eigen::Vector3d p) const {
+    for (int round = 0; round < 30; ++round) {
+      const nearest near = nearest_to(p);
+      if (near.distance >= least_) return p;
+      if (!(near.distance > 1e-9)) return std::nullopt;
+      p += (1.02 * least_ - near.distance) / near.distance * (p - near.point);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const mesh::surface_index& surface_;
+  double least_;
+};
+
+/// The direction against the mean normal of the surface in the middle half of an image.
+inline std::optional<Eigen::Vector3d> view_of_surface(const math::rigid3& pose,
+                                                      const math::camera& camera,
+                                                      double stand_off,
+                                                      const mesh::ray_surface& surface) {
+  const wall_frame frame = frame_on_wall(camera, 1);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const double x : {-0.25, 0.0, 0.25}) {
+    for (const double y : {-0.25, 0.0, 0.25}) {
+      const Eigen::Vector3d ray =
+          pose.rotation * Eigen::Vector3d(x * frame.width, y * frame.height, 1).normalized();
+      const auto hit = surface.first_hit(pose.translation, ray, 3 * stand_off);
+      if (!hit) continue;
+      const Eigen::Vector3d normal = surface.normal_at(hit->place);
+      sum += normal.dot(ray) > 0 ? normal : Eigen::Vector3d(-normal);
+    }
+  }
+  const Eigen::Vector3d ahead = pose.rotation.col(2);
+  // A view that would turn by more than 60 degrees belongs to something beside the asset.
+  if (!(sum.norm() > 1e-6) || sum.normalized().dot(ahead) < 0.5) return std::nullopt;
+  return sum.normalized();
+}
+
+/// `to`, or on the way to it as far as an angle from `from`.
+inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
+                                      const Eigen::Matrix3d& to,
+                                      double angle) {
+  const Eigen::Vector3d turn = math::axis_angle_from(to * from.transpose());
+  if (turn.norm() <= angle) return to;
+  const Eigen::Vector3d part = angle / turn.norm() * turn;
+  return math::rotation_from(part) * from;
+}
+
+inline void place_frames(flight_plan& plan, const flight_path& path, const fly_options& options) {
+  const frame_scale scale(path);
+  const double total = scale.total();
+  if (!(total > 0)) throw argument_error("survey::fly: a path of some length expected");
+  double n_steps = 0;
+  if (options.frames) {
+    const std::size_t least = path.is_closed ? 1 : 2;
+    if (*options.frames < least || *options.frames > 10000000)
+      throw argument_error(message("survey::fly: ", least, " to 10 000 000 frames expected"));
+    n_steps = static_cast<double>(*options.frames - (path.is_closed ? 0 : 1));
+  } else {
+    if (!(options.overlap >= 0 && options.overlap < 1))
+      throw argument_error("survey::fly: an overlap of 0 to below 1 expected");
+    n_steps = std::max(1.0, std::ceil(total / (1 - options.overlap) - 1e-9));
+    if (n_steps > 1e7) throw argument_error("survey::fly: more than 10 000 000 frames");
+  }
+  plan.length = path.length();
+  plan.step = plan.length / n_steps;
+  plan.overlap = 1 - total / n_steps;
+  const auto n = static_cast<std::size_t>(n_steps) + (path.is_closed ? 0 : 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    plan.trajectory.world_from_camera.push_back(scale.at(static_cast<double>(i) / n_steps * total));
+    plan.trajectory.names.push_back(options.name(i));
+  }
+}
+
+inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
+  const clearance keep(space.distance, options.min_distance);
+  auto& poses = plan.trajectory.world_from_camera;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Eigen::Vector3d& at = poses[i].translation;
+    const double distance = keep.nearest_to(at).distance;
+    if (distance >= options.min_distance) continue;
+    const auto there = options.clearance == clearance_rule::push ? keep.pushed(at) : std::nullopt;
+    if (!there) {
+      throw undefined_error(message(
+          "survey::fly: ", plan.trajectory.names[i], " at (", at.x(), ", ", at.y(), ", ", at.z(),
+          ") is ", distance, " from the mesh, at least ", options.min_distance, " expected",
+          options.clearance == clearance_rule::push ? "; there is no way out of it nearby" : ""));
+    }
+    ++plan.n_pushed;
+    plan.largest_push = std::max(plan.largest_push, (*there - at).norm());
+    at = *there;
+  }
+  plan.min_distance = HUGE_VAL;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d from = poses[i].translation;
+    const Eigen::Vector3d way = i + 1 < poses.size()
+                                    ? Eigen::Vector3d(poses[i + 1].translation - from)
+                                    : Eigen::Vector3d::Zero();
+    const double n = std::clamp(std::ceil(2 * way.norm() / options.min_distance), 1.0, 1000.0);
+    for (double k = 0; k < n; ++k) {
+      const double distance = keep.nearest_to(from + k / n * way).distance;
+      if (distance >= *plan.min_distance) continue;
+      plan.min_distance = distance;
+      plan.min_distance_frame = i;
+    }
+  }
+  if (options.clearance == clearance_rule::refuse && *plan.min_distance < options.min_distance) {
+    throw undefined_error(message("survey::fly: the way from ",
+                                  plan.trajectory.names[plan.min_distance_frame],
+                                  " to the next frame passes ", *plan.min_distance,
+                                  " from the mesh, at least ", options.min_distance, " expected"));
+  }
+}
+
+inline void aim(flight_plan& plan, const flight_path& path, const flight_space& space) {
+  for (math::rigid3& pose : plan.trajectory.world_from_camera) {
+    const auto view = view_of_surface(pose, path.camera, path.stand_off, space.sight);
+    if (view) pose.rotation = looking(*view, -pose.rotation.col(1));
+  }
+}
+
+inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) {
+  auto& poses = plan.trajectory.world_from_camera;
+  double stamp = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) {
+      const double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
+      const Eigen::Matrix3d reached = turned_at_most(poses[i - 1].rotation, poses[i].rotation,
+                                                     options.gimbal_rate * time + 1e-9);
+      if (reached != poses[i].rotation) ++plan.n_gimbal_limited;
+      poses[i].rotation = reached;
+      stamp += time;
+    }
+    plan.trajectory.stamps_s.push_back(stamp);
+  }
+  plan.duration_s = stamp;
+}
+
+}  // namespace detail
+
+/// Places frames on a path, evenly by what the image moves: exactly `frames`, or as few as keep the
+/// overlap. The views of the frames turn no faster than the gimbal.
+///
+/// space   needed for min_distance and for aim_rule::normal
+///
+/// Throws argument_error where an option is out of its range or the space is missing;
+/// undefined_error where a pose is too near to the mesh and cannot or shall not be pushed.
+[[nodiscard]] inline flight_plan fly(const flight_path& path,
+                                     const fly_options& options = {},
+                                     const flight_space* space = nullptr) {
+  if (!(options.speed > 0) || !(options.gimbal_rate > 0) || !(options.min_distance >= 0))
+    throw argument_error("survey::fly: speed and gimbal rate above 0, a distance from 0 expected");
+  if (!space && (options.min_distance > 0 || options.aim == aim_rule::normal))
+    throw argument_error("survey::fly: a mesh expected to keep away from, or to aim at");
+  flight_plan plan{.camera = path.camera,
+                   .overlap_across = path.overlap_across,
+                   .gsd = ground_sampling(path.camera, path.stand_off)};
+  detail::place_frames(plan, path, options);
+  if (options.min_distance > 0) detail::keep_away(plan, options, *space);
+  if (options.aim == aim_rule::normal) detail::aim(plan, path, *space);
+  detail::set_stamps_and_turns(plan, options);
+  return plan;
+}
+
+}  // namespace aib::survey

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#include <aib/mesh/distances.hpp>
+#include <aib/mesh/mesh.hpp>
+#include <aib/mesh/ray_surface.hpp>
+#include <aib/survey/facade.hpp>
+#include <aib/survey/fly.hpp>
+#include <aib/survey/linear.hpp>
+#include <aib/survey/measure.hpp>
+#include <aib/survey/orbit.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+using namespace aib;
+
+namespace {
+
+/// A box along the axes from corner to corner, faces outwards; labels 0 walls, 1 top and bottom.
+mesh::mesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  mesh::mesh m;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d p((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
+                            (i & 4) ? high.z() : low.z());
+    m.vertices.push_back(p.cast<float>());
+  }
+  const std::uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  for (std::uint32_t s = 0; s < 6; ++s) {
+    const auto& q = sides[s];
+    m.triangles.push_back({q[0], q[1], q[2]});
+    m.triangles.push_back({q[0], q[2], q[3]});
+    m.labels.insert(m.labels.end(), 2, s / 4);
+  }
+  m.label_names = {"wall", "flat"};
+  return m;
+}
+
+std::vector<math::view> views_of(const survey::flight_plan& plan) {
+  std::vector<math::view> views;
+  for (const math::rigid3& pose : plan.trajectory.world_from_camera)
+    views.push_back({plan.camera, pose});
+  return views;
+}
+
+double angle_between(const math::rigid3& a, const math::rigid3& b) {
+  return math::rotation_angle(a.rotation * b.rotation.transpose());
+}
+
+const mesh::mesh office = box({-15, -10, 0}, {15, 10, 15});
+
+survey::flight_path office_path(double stand_off) {
+  return survey::facade(survey::footprint_of(office), {.path = {.stand_off = stand_off}});
+}
+
+}  // namespace
+
+TEST_CASE("a lens of 50 mm before 36 mm sees 0.72 x 0.405 of the distance") {
+  const math::camera c = survey::camera_of({});
+  CHECK(c.fx() == doctest::Approx(8000.0 / 3));
+  CHECK(survey::frame_on_wall(c, 10).width == doctest::Approx(7.2));
+  CHECK(survey::frame_on_wall(c, 10).height == doctest::Approx(4.05));
+  CHECK(survey::ground_sampling(c, 4) == doctest::Approx(0.0015));
+  CHECK_THROWS_AS(static_cast<void>(survey::camera_of({.focal_mm = 0})), argument_error);
+}
+
+TEST_CASE("a footprint is the convex hull, anticlockwise") {
+  const auto plan = survey::footprint_of(office);
+  CHECK(plan.corners == std::vector<Eigen::Vector2d>{{-15, -10}, {15, -10}, {15, 10}, {-15, 10}});
+  CHECK(plan.low == 0);
+  CHECK(plan.high == 15);
+  CHECK_THROWS_AS(static_cast<void>(survey::footprint_of(office, {7})), undefined_error);
+  CHECK(survey::anticlockwise({{0, 0}, {0, 1}, {1, 0}}).front() == Eigen::Vector2d(1, 0));
+  CHECK_THROWS_AS(
+      static_cast<void>(survey::anticlockwise({{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}})),
+      argument_error);
+  CHECK_THROWS_AS(static_cast<void>(survey::labels_of({"glass"}, {"glas"})), argument_error);
+}
+
+TEST_CASE("a path has no jump in place or view, and reverses to itself") {
+  const auto orbit =
+      survey::orbit({.path = {.stand_off = 5}, .radius = 20, .low = 2, .high = 8, .look_at = 5});
+  const auto mast = survey::linear({.path = {.stand_off = 4},
+                                    .from = {0, 0, 0},
+                                    .to = {0, 0, 30},
+                                    .views = {{0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}},
+                                    .width = 3,
+                                    .radius = 1});
+  for (const auto& path : {office_path(6), orbit, mast, survey::join({office_path(6), mast})}) {
+    const double n = 4000;
+    for (double i = 0; i < n; ++i) {
+      const auto a = path.at(i / n), b = path.at((i + 1) / n);
+      REQUIRE((b.translation - a.translation).norm() < 1.01 * path.length() / n + 1e-9);
+      REQUIRE(angle_between(a, b) < 0.3);
+      const auto mirrored = path.reversed().at(1 - i / n);
+      REQUIRE((mirrored.translation - a.translation).norm() < 1e-6);
+      REQUIRE(angle_between(mirrored, a) < 1e-6);
+    }
+  }
+  CHECK(mast.n_rows == 8);
+}
+
+TEST_CASE("rows lie on the offset of the footprint and look at it at right angles") {
+  const auto path = office_path(6);
+  for (double i = 0; i <= 500; ++i) {
+    const auto pose = path.at(i / 500);
+    const Eigen::Vector3d near = pose.translation.cwiseMax(Eigen::Vector3d(-15, -10, 0))
+                                     .cwiseMin(Eigen::Vector3d(15, 10, 15));
+    CHECK((pose.translation - near).norm() == doctest::Approx(6));
+    CHECK((pose.rotation.col(2) - (near - pose.translation) / 6).norm() < 1e-9);
+    CHECK(pose.rotation(2, 0) == doctest::Approx(0));  // the horizon is level
+    CHECK(pose.rotation(2, 1) < 0);                    // up is up
+  }
+}
+
+TEST_CASE("as many frames as are asked for, evenly") {
+  for (const std::size_t n : {4763u, 642u, 1074u, 2u}) {
+    const auto plan = survey::fly(office_path(5.6), {.frames = n});
+    CHECK(plan.trajectory.size() == n);
+    CHECK(plan.trajectory.names.size() == n);
+    CHECK(plan.step * static_cast<double>(n - 1) == doctest::Approx(plan.length));
+  }
+  const auto plan = survey::fly(office_path(5.6), {.overlap = 0.8});
+  CHECK(plan.overlap >= 0.8);
+  CHECK(survey::fly(office_path(5.6), {.frames = plan.trajectory.size()}).overlap ==
+        doctest::Approx(plan.overlap));
+  CHECK(plan.trajectory.names[12] == "000012.png");
+  const auto circle = survey::orbit({.path = {.stand_off = 8}, .radius = 8});
+  const auto closed = survey::fly(circle, {.frames = 10});
+  CHECK(angle_between(closed.trajectory.world_from_camera.front(),
+                      closed.trajectory.world_from_camera.back()) ==
+        doctest::Approx(2 * std::numbers::pi / 10));
+  CHECK_THROWS_AS(static_cast<void>(survey::fly(circle, {.overlap = 1})), argument_error);
+  CHECK_THROWS_AS(static_cast<void>(survey::fly(circle, {.frames = 0})), argument_error);
+}
+
+TEST_CASE("planned and measured overlap are within 3 percentage points on a wall") {
+  const mesh::mesh wall = box({-20, 0, 0}, {20, 1, 6});
+  const mesh::ray_surface surface(wall);
+  for (const double overlap : {0.6, 0.8, 0.9}) {
+    const auto pass = survey::linear(
+        {.path = {.stand_off = 5}, .from = {-12, 0, 3}, .to = {12, 0, 3}, .views = {{0, 1, 0}}});
+    const auto plan = survey::fly(pass, {.overlap = overlap});
+    const auto report = survey::measure(views_of(plan), wall, surface, {.samples = 200});
+    for (const double measured : report.overlap) CHECK(std::abs(measured - plan.overlap) < 0.03);
+    CHECK(std::abs(plan.overlap - overlap) < 0.03);
+  }
+  // Rows overlap as planned as well: fly up and down.
+  const auto climb = survey::linear(
+      {.path = {.stand_off = 5}, .from = {0, 0, 1.5}, .to = {0, 0, 4.5}, .views = {{0, 1, 0}}});
+  const auto plan = survey::fly(climb, {.overlap = 0.75});
+  for (const double measured :
+       survey::measure(views_of(plan), wall, surface, {.samples = 200}).overlap)
+    CHECK(std::abs(measured - plan.overlap) < 0.03);
+}
+
+TEST_CASE("a flight round the walls sees them from everywhere, and nothing of roof and floor") {
+  const mesh::ray_surface surface(office);
+  const auto plan = survey::fly(office_path(12), {.overlap = 0.7});
+  const auto report = survey::measure(views_of(plan), office, surface,
+                                      {.labels = {0}, .samples = 2000, .columns = 16, .rows = 9});
+  CHECK(report.area == doctest::Approx(2 * 50 * 15));
+  CHECK(report.seen_by(1) == 1);
+  CHECK(report.seen_by(3) > 0.99);
+  CHECK(report.seen_within(0.5) == 1);
+  CHECK(report.seen_by(1000) == 0);
+  for (const float gsd : report.gsd) CHECK(gsd >= 0.99f * static_cast<float>(plan.gsd));
+  const double least = *std::min_element(report.overlap.begin(), report.overlap.end());
+  CHECK(least > plan.overlap - 0.15);  // at a corner, where one wall hides behind the other
+  std::vector<double> sorted = report.overlap;
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(std::abs(sorted[sorted.size() / 2] - plan.overlap) < 0.03);
+  const auto flat = survey::measure(views_of(plan), office, surface,
+                                    {.labels = {1}, .samples = 500, .columns = 4, .rows = 2});
+  CHECK(flat.seen_by(1) < 0.01);
+  const auto alone = survey::measure(views_of(plan), office, surface,
+                                     {.samples = 500, .columns = 4, .rows = 2, .threads = 1});
+  const auto many = survey::measure(views_of(plan), office, surface,
+                                    {.samples = 500, .columns = 4, .rows = 2, .threads = 3});
+  CHECK(alone.overlap == many.overlap);
+  CHECK(alone.gsd == many.gsd);
+  CHECK(alone.seen_by(2) == many.seen_by(2));
+}
+
+TEST_CASE("frames keep away from what stands in their way, or the plan says what does") {
+  mesh::mesh with_pillar = office;
+  const mesh::mesh pillar = box({-1, -17, 0}, {1, -16.5, 20});
+  for (const auto& [a, b, c] : pillar.triangles)
+    with_pillar.triangles.push_back({a + 8, b + 8, c + 8});
+  with_pillar.vertices.insert(with_pillar.vertices.end(), pillar.vertices.begin(),
+                              pillar.vertices.end());
+  with_pillar.labels.clear();
+  const mesh::surface_index distance(with_pillar);
+  const mesh::ray_surface sight(with_pillar);
+  const survey::flight_space space{distance, sight};
+  const auto path = office_path(5);
+  const auto pushed = survey::fly(path, {.min_distance = 2}, &space);
+  CHECK(pushed.n_pushed > 0);
+  CHECK(pushed.largest_push < 2.1);
+  CHECK(*pushed.min_distance >= 1.5);
+  for (const math::rigid3& pose : pushed.trajectory.world_from_camera) {
+    const Eigen::Vector3d near = pose.translation.cwiseMax(Eigen::Vector3d(-1, -17, 0))
+                                     .cwiseMin(Eigen::Vector3d(1, -16.5, 20));
+    CHECK((pose.translation - near).norm() >= 2);
+  }
+  using survey::clearance_rule;
+  CHECK_THROWS_AS(static_cast<void>(survey::fly(
+                      path, {.min_distance = 2, .clearance = clearance_rule::refuse}, &space)),
+                  undefined_error);
+  CHECK(survey::fly(path, {.min_distance = 1, .clearance = clearance_rule::refuse}, &space)
+            .n_pushed == 0);
+  CHECK_THROWS_AS(static_cast<void>(survey::fly(path, {.min_distance = 2})), argument_error);
+}
+
+TEST_CASE("the camera aims along the normal, no faster than the gimbal turns") {
+  // A roof of 45 degrees, passed by a camera that the path lets look level.
+  mesh::mesh roof;
+  roof.vertices = {{-50, 0, 0}, {50, 0, 0}, {50, 20, 20}, {-50, 20, 20}};
+  roof.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const mesh::surface_index distance(roof);
+  const mesh::ray_surface sight(roof);
+  const survey::flight_space space{distance, sight};
+  const auto path =
+      survey::along({{-20, -2, 8}, {20, -2, 8}}, {{0, 1, 0}, {0, 1, 0}}, {.stand_off = 8});
+  using survey::aim_rule;
+  const auto plan = survey::fly(path, {.frames = 50, .aim = aim_rule::normal}, &space);
+  const Eigen::Vector3d against = Eigen::Vector3d(0, 1, -1).normalized();
+  for (const math::rigid3& pose : plan.trajectory.world_from_camera)
+    CHECK((pose.rotation.col(2) - against).norm() < 1e-6);
+  CHECK(plan.n_gimbal_limited == 0);
+
+  const auto turning =
+      survey::along({{-20, -9, 8}, {0, -9, 8}, {0.1, -9, 8}, {20, -9, 8}},
+                    {{0, 1, 0}, {0, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {.stand_off = 9});
+  const double rate = 0.2;
+  const auto slow = survey::fly(turning, {.frames = 200, .speed = 2, .gimbal_rate = rate});
+  CHECK(slow.n_gimbal_limited > 5);
+  const auto& t = slow.trajectory;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    const double time = t.stamps_s[i] - t.stamps_s[i - 1];
+    CHECK(angle_between(t.world_from_camera[i - 1], t.world_from_camera[i]) <= rate * time + 1e-6);
+  }
+  CHECK(angle_between(t.world_from_camera.back(), turning.at(1)) < 1e-6);
+  CHECK(slow.duration_s == doctest::Approx(20));
+}
