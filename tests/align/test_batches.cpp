@@ -22,6 +22,8 @@
 
 using namespace aib;
 
+namespace test_batches {
+
 namespace {
 
 /// Batches of 10, each in a world of its own.
@@ -266,3 +268,5 @@ TEST_CASE("real GLOMAP and COLMAP models: recorded numbers, warnings, recovery")
   CHECK(robust.rmse < 0.005);
   CHECK(robust.transform.scale == doctest::Approx(0.73).epsilon(0.01));
 }
+
+}  // namespace test_batches

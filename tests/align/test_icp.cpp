@@ -19,6 +19,8 @@
 
 using namespace aib;
 
+namespace test_icp {
+
 namespace {
 
 /// Points on a wavy sheet with its normals.
@@ -127,3 +129,5 @@ TEST_CASE("icp ends where Open3D's ends") {
   }
 }
 #endif
+
+}  // namespace test_icp

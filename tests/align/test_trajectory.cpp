@@ -17,6 +17,8 @@
 using namespace aib;
 using align::align_mode;
 
+namespace test_trajectory {
+
 namespace {
 
 double distance(const math::sim3& a, const math::sim3& b) {
@@ -269,3 +271,5 @@ TEST_CASE("evo's alignments, outlier removal and batches") {
     }
   }
 }
+
+}  // namespace test_trajectory

@@ -15,6 +15,8 @@
 
 using namespace aib;
 
+namespace test_umeyama {
+
 namespace {
 
 using points = std::vector<Eigen::Vector3d>;
@@ -116,3 +118,5 @@ TEST_CASE("evo's degenerate and other inputs") {
     }
   }
 }
+
+}  // namespace test_umeyama

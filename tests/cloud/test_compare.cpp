@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_compare {
+
 namespace {
 
 cloud::cloud on_x(std::vector<float> xs) {
@@ -64,3 +66,5 @@ TEST_CASE("points that are not finite are counted over both clouds; nothing is u
       "cloud::compare: no finite point in the estimated cloud (0 points, 0 not finite)",
       undefined_error);
 }
+
+}  // namespace test_compare

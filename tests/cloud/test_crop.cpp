@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_crop {
+
 namespace {
 
 /// Points 0.5, 1.5 ... 3.5 on the diagonal of the plane z = 1, and one that is not finite.
@@ -80,3 +82,5 @@ TEST_CASE("a grid has its cells around their centres, and nothing outside") {
   CHECK_FALSE(grid.contains({12, 0, 2}));
   CHECK_FALSE(grid.contains({std::numeric_limits<double>::quiet_NaN(), 0, 2}));
 }
+
+}  // namespace test_crop

@@ -15,6 +15,8 @@
 
 using namespace aib;
 
+namespace test_distances {
+
 namespace {
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
@@ -135,3 +137,5 @@ TEST_CASE("what searches is named after the instruction set, for units of differ
   const std::string name = typeid(cloud::distances).name();
   CHECK(name.find(instruction_set) != std::string::npos);
 }
+
+}  // namespace test_distances

@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_eth3d {
+
 namespace {
 
 /// A wall in the plane x = 4, seen from the origin.
@@ -104,3 +106,5 @@ TEST_CASE("where nothing was observed there is no accuracy") {
   CHECK_THROWS_AS(score(hidden, {}), argument_error);
   CHECK_THROWS_AS(score(hidden, {0.0}), argument_error);
 }
+
+}  // namespace test_eth3d

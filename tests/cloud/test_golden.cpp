@@ -137,3 +137,5 @@ TEST_CASE("voxels are Open3D's where the lattice is") {
   }
 }
 #endif
+
+namespace test_golden {}  // namespace test_golden

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_join {
+
 TEST_CASE("joined clouds keep their places, whatever their origins") {
   const cloud::cloud a{.origin = {5e5, 0, 0}, .points = {{1, 2, 3}}, .colors = {{1, 2, 3}}};
   const cloud::cloud b{.origin = {5e5 + 16, 1, 0}, .points = {{0.5, 0, 0}}, .colors = {{4, 5, 6}}};
@@ -26,3 +28,5 @@ TEST_CASE("what not every cloud has is dropped") {
   const std::array<const cloud::cloud*, 2> both{&a, &b};
   CHECK(cloud::joined(both).labels.empty());
 }
+
+}  // namespace test_join

@@ -13,6 +13,8 @@
 
 using namespace aib;
 
+namespace test_offsets {
+
 namespace {
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
@@ -78,3 +80,5 @@ TEST_CASE("scores by label are those of the points of the label") {
   CHECK_THROWS_AS((void)cloud::by_label(both, reference.labels, labels), argument_error);
   CHECK_THROWS_AS((void)cloud::nearest_labels(estimate, estimate), argument_error);
 }
+
+}  // namespace test_offsets

@@ -17,6 +17,8 @@
 
 using namespace aib;
 
+namespace test_outliers {
+
 namespace {
 
 /// A sheet z = x / 2 with labels 0, one point far above it with label 1, and one that is not
@@ -92,3 +94,5 @@ TEST_CASE("statistical outliers are those that Open3D removes") {
           e.kept_16_1);
   }
 }
+
+}  // namespace test_outliers

@@ -6,6 +6,8 @@
 
 using namespace aib;
 
+namespace test_transform {
+
 TEST_CASE("a similarity moves points in double and turns normals") {
   Eigen::Matrix3d quarter;  // about z
   quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -22,3 +24,5 @@ TEST_CASE("a similarity moves points in double and turns normals") {
   CHECK(back.origin == Eigen::Vector3d(0, 0, 0));
   CHECK((back.points[0] - local.points[0]).norm() < 1e-6);
 }
+
+}  // namespace test_transform

@@ -6,6 +6,8 @@
 
 using namespace aib;
 
+namespace test_error {
+
 TEST_CASE("a message writes numbers in their shortest exact form") {
   CHECK(message("x = ", 0.1, ", n = ", 3, ", ", true, '!') == "x = 0.1, n = 3, true!");
   CHECK(message(1e300) == "1e+300");
@@ -18,3 +20,5 @@ TEST_CASE("a format error names the file and the place") {
                        format_error);
   CHECK_THROWS_WITH_AS(throw io_error("a b.bin", "cannot open"), "a b.bin: cannot open", io_error);
 }
+
+}  // namespace test_error

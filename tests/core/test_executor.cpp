@@ -12,6 +12,8 @@
 
 using namespace aib;
 
+namespace test_executor {
+
 namespace {
 
 double harmonic(unsigned threads) {
@@ -92,3 +94,5 @@ TEST_CASE("parallel work inside parallel work runs on its own thread") {
   });
   CHECK(wrong == 0);
 }
+
+}  // namespace test_executor

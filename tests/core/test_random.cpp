@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_random {
+
 static_assert(std::uniform_random_bit_generator<random_engine>);
 
 TEST_CASE("the bits of a counter are those of SplitMix64") {
@@ -49,3 +51,5 @@ TEST_CASE("normal numbers have mean 0 and deviation 1") {
   CHECK(std::abs(sum / 100'000) < 0.02);
   CHECK(squares / 100'000 == doctest::Approx(1).epsilon(0.02));
 }
+
+}  // namespace test_random

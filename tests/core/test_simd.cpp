@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_simd {
+
 namespace {
 
 template <class Lanes, class Scalar>
@@ -103,3 +105,5 @@ TEST_CASE("eight doubles are two times four") {
   const float floats[8] = {1, 2, 3, 4, 5, 6, 7, 8};
   CHECK(sum(f64x8::convert(floats)) == 36);
 }
+
+}  // namespace test_simd

@@ -12,6 +12,8 @@
 using namespace aib;
 using doctest::Approx;
 
+namespace test_accumulate {
+
 namespace {
 
 depth::frame numbered_frame(std::size_t i) {
@@ -119,3 +121,5 @@ TEST_CASE("no frame at all, or none that is valid, is undefined") {
   all.add("lost", nothing.view(), nothing.view());
   CHECK_THROWS_AS((void)all.result(), undefined_error);
 }
+
+}  // namespace test_accumulate

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_error_image {
+
 namespace {
 
 constexpr std::size_t gap = 6;
@@ -82,3 +84,5 @@ TEST_CASE("nothing to show is undefined, two sizes are refused") {
   CHECK_THROWS_AS((void)depth::error_image(nothing, f.reference), undefined_error);
   CHECK_THROWS_AS((void)depth::error_image(small, f.reference), argument_error);
 }
+
+}  // namespace test_error_image

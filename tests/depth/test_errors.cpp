@@ -13,6 +13,8 @@
 using namespace aib;
 using doctest::Approx;
 
+namespace test_errors {
+
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -184,3 +186,5 @@ TEST_CASE("no valid pixel is undefined and says the counts") {
   CHECK_THROWS_AS(errors(row<float>({0}), row<float>({1}), {.align = depth::alignment::median}),
                   undefined_error);
 }
+
+}  // namespace test_errors

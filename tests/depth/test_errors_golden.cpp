@@ -16,6 +16,8 @@
 using namespace aib;
 using depth::alignment;
 
+namespace test_errors_golden {
+
 namespace {
 
 /// A zero is compared absolutely: below 1e-12 both are rounding.
@@ -165,3 +167,5 @@ TEST_CASE("depth errors are NumPy's to nine digits, those of CUT3R, pi3, monodep
                            "livingroom_10_vs_20_png", "sensor_lowres_nearest", "sensor_pfm_exr"})
     check_case(name);
 }
+
+}  // namespace test_errors_golden

@@ -72,3 +72,5 @@ TEST_CASE("srmse of the rendered scenes is the recorded one for both index rules
 }
 
 #endif
+
+namespace test_errors_scenes {}  // namespace test_errors_scenes

@@ -12,6 +12,8 @@ using namespace aib;
 using depth::alignment;
 using doctest::Approx;
 
+namespace test_fit {
+
 namespace {
 
 raster::image<double> row(std::initializer_list<double> depths) {
@@ -102,3 +104,5 @@ TEST_CASE("what cannot be fitted is undefined") {
   CHECK_THROWS_AS(fit(alignment::scale_shift, row({2, 2}), row({1, 3})), undefined_error);
   CHECK(fit(alignment::none, row({0}), row({1})) == depth::affine{});
 }
+
+}  // namespace test_fit

@@ -11,6 +11,8 @@ using namespace aib;
 using depth::preset;
 using doctest::Approx;
 
+namespace test_presets {
+
 namespace {
 
 /// A frame of the reference depth everywhere and an estimate in the frame's own scale.
@@ -83,3 +85,5 @@ TEST_CASE("a sequence fit does not depend on the threads, and needs a valid pixe
   };
   CHECK_THROWS_AS((void)depth::accumulate(2, options, nothing), undefined_error);
 }
+
+}  // namespace test_presets

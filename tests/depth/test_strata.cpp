@@ -16,6 +16,8 @@
 using namespace aib;
 using doctest::Approx;
 
+namespace test_strata {
+
 namespace {
 
 template <class T>
@@ -215,3 +217,5 @@ TEST_CASE("boundary errors: the same map, no edge near, no true edge, other size
   CHECK_THROWS_AS((void)depth::boundary_error(reference, none), undefined_error);
   CHECK_THROWS_AS((void)depth::boundary_error(reference, small), argument_error);
 }
+
+}  // namespace test_strata

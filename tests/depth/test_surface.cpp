@@ -14,6 +14,8 @@
 using namespace aib;
 using doctest::Approx;
 
+namespace test_surface {
+
 namespace {
 
 constexpr std::size_t width = 64, height = 48;
@@ -174,3 +176,5 @@ TEST_CASE("risk and coverage: pixels without a confidence come last; a perfect m
   CHECK_THROWS_AS((void)depth::risk_coverage(view(empty), view(reference), view(confidence)),
                   undefined_error);
 }
+
+}  // namespace test_surface

@@ -17,6 +17,8 @@
 
 using namespace aib;
 
+namespace test_cloud {
+
 namespace {
 
 const support::scratch scratch;
@@ -210,3 +212,5 @@ TEST_CASE("points of an npz are found by name, with their colours") {
 }
 
 #endif
+
+}  // namespace test_cloud

@@ -16,6 +16,8 @@
 using namespace aib;
 using nlohmann::json;
 
+namespace test_colmap {
+
 namespace {
 
 /// The three text files of a model, each of which a test may replace.
@@ -320,3 +322,5 @@ TEST_CASE("a model's text and binary files say the same") {
     }
   }
 }
+
+}  // namespace test_colmap

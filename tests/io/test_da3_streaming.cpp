@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_da3_streaming {
+
 TEST_CASE("streaming leaves poses and intrinsics line by line") {
   const support::scratch scratch;
   scratch.file("camera_poses.txt",
@@ -23,3 +25,5 @@ TEST_CASE("streaming leaves poses and intrinsics line by line") {
       doctest::Contains("intrinsic.txt: a line for each of the 2 poses expected, found 1"),
       format_error);
 }
+
+}  // namespace test_da3_streaming

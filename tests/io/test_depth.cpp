@@ -21,6 +21,8 @@
 
 using namespace aib;
 
+namespace test_depth {
+
 namespace {
 
 const support::scratch scratch;
@@ -277,3 +279,5 @@ TEST_CASE("a frame is read at the size of its estimate, mask and labels too") {
   files.reference = scratch.folder() / "nothing.npy";
   CHECK_THROWS_AS((void)io::read_depth_frame(files), io_error);
 }
+
+}  // namespace test_depth

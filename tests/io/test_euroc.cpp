@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_euroc {
+
 namespace {
 
 const support::scratch scratch;
@@ -43,3 +45,5 @@ TEST_CASE("a wrong EuRoC file is refused with its line") {
                        doctest::Contains("data.csv:1: euroc: the quaternion is zero"),
                        format_error);
 }
+
+}  // namespace test_euroc

@@ -21,6 +21,8 @@
 
 using namespace aib;
 
+namespace test_exr {
+
 namespace {
 
 const support::scratch scratch;
@@ -392,3 +394,5 @@ TEST_CASE("exr: the same bits as tinyexr on the shared files") {
 }
 
 #endif
+
+}  // namespace test_exr

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_fingerprint {
+
 namespace {
 
 std::string hash_of(std::string_view bytes) { return io::sha256().add(bytes).digest(); }
@@ -54,3 +56,5 @@ TEST_CASE("the fingerprint of a file is its size and its content's hash") {
   CHECK(f.sha256 == hash_of(content));
   CHECK_THROWS_AS(io::fingerprint_of(path), io_error);
 }
+
+}  // namespace test_fingerprint

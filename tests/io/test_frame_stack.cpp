@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_frame_stack {
+
 namespace {
 
 const support::scratch scratch;
@@ -69,3 +71,5 @@ TEST_CASE("deflated frames are those of the whole array, forwards and backwards"
     CHECK(n_different == 0);
   }
 }
+
+}  // namespace test_frame_stack

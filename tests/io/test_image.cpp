@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_image {
+
 namespace {
 
 const support::scratch scratch;
@@ -99,3 +101,5 @@ TEST_CASE("what is no image is refused") {
   CHECK_THROWS_AS(io::read_labels(scratch.file("a.doc", "hello")), format_error);
   CHECK_THROWS_AS(io::read_image(scratch.folder() / "missing.png"), io_error);
 }
+
+}  // namespace test_image

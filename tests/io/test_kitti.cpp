@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_kitti {
+
 namespace {
 
 const support::scratch scratch;
@@ -78,3 +80,5 @@ TEST_CASE("lines of 16 numbers are 4 x 4 matrices") {
           "camera_poses.txt:1: matrix lines: 16 numbers (4 x 4 matrix by rows) expected, found 3"),
       format_error);
 }
+
+}  // namespace test_kitti

@@ -13,6 +13,8 @@
 
 using namespace aib;
 
+namespace test_mesh {
+
 namespace {
 
 const support::scratch scratch;
@@ -197,3 +199,5 @@ TEST_CASE("what is read as a mesh but is none is refused with advice") {
         ": glTF of several files is not supported; export it as .glb");
   CHECK(error_of(scratch.file("a.xyz", "1 2 3\n")) == ": a mesh expected: PLY, OBJ, STL or GLB");
 }
+
+}  // namespace test_mesh

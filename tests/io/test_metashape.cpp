@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_metashape {
+
 namespace {
 
 const support::scratch scratch;
@@ -101,3 +103,5 @@ TEST_CASE("a wrong Metashape file is refused with its place") {
   CHECK_THROWS_WITH_AS(io::read_metashape(scratch.file("x.xml", "<document>")),
                        doctest::Contains("xml: "), format_error);
 }
+
+}  // namespace test_metashape

@@ -14,6 +14,8 @@
 using namespace aib;
 using namespace std::string_literals;
 
+namespace test_npy {
+
 namespace {
 
 /// An NPY file of version 1 around a header and the bytes of its elements.
@@ -169,3 +171,5 @@ TEST_CASE("what is not an array of numbers is refused in a sentence") {
         "a.npy: byte 91: npy: (4294967296, 4294967296, 2) elements of type f4 do not fit in the "
         "24 bytes left");
 }
+
+}  // namespace test_npy

@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_npz {
+
 namespace {
 
 const support::scratch scratch;
@@ -202,3 +204,5 @@ TEST_CASE("arrays come back from the NPZ file that we write") {
   CHECK(file.read("first").shape == std::vector<std::size_t>{2, 3});
   CHECK(file.read("second").values<float>() == values);
 }
+
+}  // namespace test_npz

@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_opensfm {
+
 namespace {
 
 const support::scratch scratch;
@@ -106,3 +108,5 @@ TEST_CASE("a wrong reconstruction.json is refused with its place") {
                                 shot("a")))) ==
         "reconstruction.json: [0].cameras.c: width and height of 1 or more pixels expected");
 }
+
+}  // namespace test_opensfm

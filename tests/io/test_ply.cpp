@@ -17,6 +17,8 @@
 
 using namespace aib;
 
+namespace test_ply {
+
 namespace {
 
 const support::scratch scratch;
@@ -325,3 +327,5 @@ TEST_CASE("meshes and clouds of the rendered scenes are read") {
   CHECK(fused.normals.size() == 12000);
   CHECK(fused.colors.size() == 12000);
 }
+
+}  // namespace test_ply

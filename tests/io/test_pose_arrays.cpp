@@ -14,6 +14,8 @@
 
 using namespace aib;
 
+namespace test_pose_arrays {
+
 namespace {
 
 const support::scratch scratch;
@@ -145,3 +147,5 @@ TEST_CASE("what the networks' own exporters leave is read") {
   CHECK(folder.cameras.size() == 22);
   CHECK(cut3r.cameras.size() == 1);
 }
+
+}  // namespace test_pose_arrays

@@ -11,6 +11,8 @@ using namespace aib;
 using namespace aib::io;
 using support::distance;
 
+namespace test_pose_frame {
+
 namespace {
 
 constexpr pose_frame camera_from_world{pose_convention::camera_from_world, camera_axes::opencv};
@@ -91,3 +93,5 @@ TEST_CASE("a quaternion of any length is normalised, zero refused") {
   CHECK_THROWS_WITH_AS(pose_from_quaternion({0, 0, 0, 0}, {0, 0, 0}), "the quaternion is zero",
                        argument_error);
 }
+
+}  // namespace test_pose_frame

@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_reality_capture {
+
 namespace {
 
 const support::scratch scratch;
@@ -71,3 +73,5 @@ TEST_CASE("a wrong RealityCapture file is refused with its line") {
       doctest::Contains("cameras.csv:2: reality_capture: alt: a number expected, found 'high'"),
       format_error);
 }
+
+}  // namespace test_reality_capture

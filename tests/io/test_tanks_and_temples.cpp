@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_tanks_and_temples {
+
 namespace {
 
 const support::scratch scratch;
@@ -46,3 +48,5 @@ TEST_CASE("a wrong log file is refused with its line") {
       doctest::Contains("scene.log:2: log: 4 numbers (row of a 4 x 4 matrix) expected, found 3"),
       format_error);
 }
+
+}  // namespace test_tanks_and_temples

@@ -16,6 +16,8 @@
 using namespace aib;
 using io::pose_format;
 
+namespace test_trajectory {
+
 namespace {
 
 const support::scratch scratch;
@@ -244,3 +246,5 @@ TEST_CASE("the golden stacks of matrices are read as they are") {
     }
   }
 }
+
+}  // namespace test_trajectory

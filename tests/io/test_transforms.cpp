@@ -14,6 +14,8 @@
 
 using namespace aib;
 
+namespace test_transforms {
+
 namespace {
 
 const support::scratch scratch;
@@ -169,3 +171,5 @@ TEST_CASE("the scenes' transforms.json and TUM files hold the same poses") {
     }
   }
 }
+
+}  // namespace test_transforms

@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_tum {
+
 namespace {
 
 const support::scratch scratch;
@@ -125,3 +127,5 @@ TEST_CASE("writing TUM leaves out what is not registered and counts where there 
                        argument_error);
   CHECK(io::read_file(path) == "1 0 0 0 0 0 0 1\n");
 }
+
+}  // namespace test_tum

@@ -18,6 +18,8 @@
 using namespace aib;
 using nlohmann::json;
 
+namespace test_zoo {
+
 namespace {
 
 struct outcome {
@@ -69,3 +71,5 @@ TEST_CASE("the zoo: files of other programs are read as expected, broken ones re
     CHECK(read_by[format] > 0);
   }
 }
+
+}  // namespace test_zoo

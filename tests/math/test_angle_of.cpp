@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_angle_of {
+
 namespace {
 
 double angle(double x, double y) {
@@ -44,3 +46,5 @@ TEST_CASE("angle_of the axes, of the diagonals and of nothing") {
   CHECK(angle(-3, 3) == 3 * pi / 4);
   CHECK(angle(0, 0) == 0);
 }
+
+}  // namespace test_angle_of

@@ -7,6 +7,8 @@
 using namespace aib;
 using namespace aib::math;
 
+namespace test_camera {
+
 TEST_CASE("models are found by COLMAP's number and name") {
   CHECK(find_camera_model(2) == camera_model::simple_radial);
   CHECK(find_camera_model("THIN_PRISM_FISHEYE") == camera_model::thin_prism_fisheye);
@@ -34,3 +36,5 @@ TEST_CASE("a camera without a focal length says so") {
   CHECK_THROWS_WITH_AS((void)(camera{camera_model::pinhole, 2, 2, {1}}.cx()),
                        "camera: PINHOLE expects 4 parameters, found 1", argument_error);
 }
+
+}  // namespace test_camera

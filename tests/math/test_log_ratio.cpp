@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_log_ratio {
+
 TEST_CASE("log_ratio is std::log of the ratio, near 1 and far from it") {
   random_engine random;
   double worst = 0;
@@ -39,3 +41,5 @@ TEST_CASE("log_ratio of equal numbers is 0 and of swapped numbers the opposite")
 TEST_CASE("log_ratio does not overflow where the ratio would") {
   CHECK(math::log_ratio(1e300, 1e-300) == doctest::Approx(600 * std::log(10)).epsilon(1e-15));
 }
+
+}  // namespace test_log_ratio

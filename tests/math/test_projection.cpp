@@ -11,6 +11,8 @@
 
 using namespace aib::math;
 
+namespace test_projection {
+
 namespace {
 
 camera make(camera_model model, std::vector<double> parameters) {
@@ -142,3 +144,5 @@ TEST_CASE("a camera with too few parameters is refused") {
   CHECK_THROWS_WITH_AS(project(make(camera_model::opencv, {1, 2, 3, 4}), {0, 0, 1}),
                        "camera: OPENCV expects 8 parameters, found 4", aib::argument_error);
 }
+
+}  // namespace test_projection

@@ -11,6 +11,8 @@
 using namespace aib;
 using namespace aib::math;
 
+namespace test_rotation {
+
 namespace {
 
 Eigen::Vector3d some_vector(random_engine& engine) {
@@ -61,3 +63,5 @@ TEST_CASE("the nearest rotation of a rounded rotation is close, of a mirror ther
   rounded(0, 0) = std::numeric_limits<double>::infinity();
   CHECK(!nearest_rotation(rounded));
 }
+
+}  // namespace test_rotation

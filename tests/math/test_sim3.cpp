@@ -6,6 +6,8 @@
 
 using namespace aib::math;
 
+namespace test_sim3 {
+
 namespace {
 
 const sim3 b_from_a{2.5, rotation_from(Eigen::Vector3d(0.3, -0.2, 0.9)), {1, -2, 3}};
@@ -31,3 +33,5 @@ TEST_CASE("a similarity moves a pose's position as a point and turns its axes") 
   CHECK((moved.translation - b_from_a * p_in_a).norm() < 1e-13);
   CHECK((moved.rotation - b_from_a.rotation * pose.rotation).norm() < 1e-15);
 }
+
+}  // namespace test_sim3

@@ -19,6 +19,8 @@
 
 using namespace aib;
 
+namespace test_distances {
+
 namespace {
 
 /// Soup of triangles of many sizes, slivers and some without area.
@@ -149,3 +151,5 @@ TEST_CASE("point-to-mesh distances equal Open3D's") {
     CHECK(worst <= tolerance);
   }
 }
+
+}  // namespace test_distances

@@ -14,6 +14,8 @@
 
 using namespace aib;
 
+namespace test_offsets {
+
 namespace {
 
 /// The cube [0, 1]^3, faces outward; vertices shared or, as in STL, repeated.
@@ -106,3 +108,5 @@ TEST_CASE("points take the labels of the faces nearest to them") {
   const cloud::cloud c{.points = {{0.6f, 0.5f, -1}, {0.5f, 0.4f, 2}, {3, 0.5f, 0.4f}}};
   CHECK(mesh::nearest_labels(c, m) == std::vector<std::uint32_t>{0, 1, 5});
 }
+
+}  // namespace test_offsets

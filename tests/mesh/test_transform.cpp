@@ -7,6 +7,8 @@
 
 using namespace aib;
 
+namespace test_transform {
+
 TEST_CASE("a similarity moves the vertices of a mesh in double") {
   mesh::mesh m;
   m.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}};
@@ -19,3 +21,5 @@ TEST_CASE("a similarity moves the vertices of a mesh in double") {
   CHECK(mesh::area(moved) == 12);
   CHECK(moved.labels == m.labels);
 }
+
+}  // namespace test_transform

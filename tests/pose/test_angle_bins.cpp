@@ -14,6 +14,8 @@
 
 using namespace aib;
 
+namespace test_angle_bins {
+
 namespace {
 
 /// Counts by the exact angle of every pair.
@@ -134,3 +136,5 @@ TEST_CASE("map coordinates and tiny worlds keep their directions") {
     CHECK(counts.sum(1, 0, 1) == counts.pairs());
   }
 }
+
+}  // namespace test_angle_bins

@@ -15,6 +15,8 @@
 using namespace aib;
 using pose::match_by;
 
+namespace test_associate {
+
 namespace {
 
 pose::trajectory named(std::vector<std::string> names) {
@@ -163,3 +165,5 @@ TEST_CASE("evo's association, repeated") {
     }
   }
 }
+
+}  // namespace test_associate

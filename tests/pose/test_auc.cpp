@@ -17,6 +17,8 @@
 using namespace aib;
 using pose::auc_convention;
 
+namespace test_auc {
+
 namespace {
 
 constexpr auc_convention binned[] = {auc_convention::paper, auc_convention::vggt,
@@ -251,3 +253,5 @@ TEST_CASE("auc of nothing is undefined, of anything else refused") {
   CHECK(pose::auc(reference, reference, {.max_deg = 180, .convention = auc_convention::vggt}).auc ==
         1);
 }
+
+}  // namespace test_auc

@@ -11,6 +11,8 @@
 using namespace aib;
 using pose::auc_convention;
 
+namespace test_breakdown {
+
 namespace {
 
 const pose::trajectory reference = synthetic::orbit({.frames = 24});
@@ -96,3 +98,5 @@ TEST_CASE("the worst pairs are those of the frame that is off") {
   CHECK(pose::worst_pairs(wrong, reference, {.n = 1000}).size() == 276);
   CHECK(pose::worst_pairs({}, {}).empty());
 }
+
+}  // namespace test_breakdown

@@ -20,6 +20,8 @@ using namespace aib;
 using pose::delta_unit;
 using pose::pose_relation;
 
+namespace test_errors {
+
 namespace {
 
 math::sim3 some_rigid() {
@@ -192,3 +194,5 @@ TEST_CASE("frames that are not registered are passed over, none is undefined") {
   for (auto& pose : still.world_from_camera) pose.translation.setZero();
   CHECK_THROWS_AS(pose::rpe(still, still, {pose_relation::point_distance_ratio}), undefined_error);
 }
+
+}  // namespace test_errors

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_focal {
+
 namespace {
 
 const math::camera reference = math::pinhole(1920, 1080, 2000, 2000, 960, 540);
@@ -40,3 +42,5 @@ TEST_CASE("no view has no focal error, nor has a camera without focal length") {
   const std::vector<pose::camera_pair> views = {{sphere, reference}};
   CHECK_THROWS_AS(pose::focal_error(views), argument_error);
 }
+
+}  // namespace test_focal

@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_intrinsics {
+
 namespace {
 
 const math::camera reference = math::pinhole(640, 480, 500, 500, 320, 240);
@@ -51,3 +53,5 @@ TEST_CASE("an unknown image size is refused") {
   CHECK_THROWS_AS(pose::reprojection_difference(math::pinhole(0, 0, 500, 500, 320, 240), reference),
                   argument_error);
 }
+
+}  // namespace test_intrinsics

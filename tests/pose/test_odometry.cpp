@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_odometry {
+
 namespace {
 
 /// A straight drive along z, a frame a metre, whose estimate is `scale` times as long and turns by
@@ -69,3 +71,5 @@ TEST_CASE("sub-trajectories: length, percent, yaw and gravity") {
   CHECK(straight[0].translation_percent.median == doctest::Approx(2).epsilon(0.01));
   CHECK_THROWS_AS(pose::sub_trajectories({}, {}), undefined_error);
 }
+
+}  // namespace test_odometry

@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_registration {
+
 TEST_CASE("registration names the frames that are missing") {
   const pose::trajectory reference = synthetic::orbit({.frames = 4});
   pose::trajectory estimate = select(reference, {3, 0, 1});
@@ -41,3 +43,5 @@ TEST_CASE("registration needs names and an expectation") {
   CHECK_THROWS_AS(pose::registration_rate(nameless, reference), argument_error);
   CHECK_THROWS_AS(pose::registration_rate(reference, {}), undefined_error);
 }
+
+}  // namespace test_registration

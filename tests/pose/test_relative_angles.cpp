@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_relative_angles {
+
 TEST_CASE("one frame turned by 10 degrees spoils its own pairs alone") {
   const pose::trajectory reference = synthetic::orbit({.frames = 5});
   pose::trajectory estimate = reference;
@@ -93,3 +95,5 @@ TEST_CASE("rra does not change with the order of the frames") {
   CHECK(pose::relative_angles(estimate, reference).rra ==
         pose::relative_angles(select(estimate, order), select(reference, order)).rra);
 }
+
+}  // namespace test_relative_angles

@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_canny {
+
 namespace {
 
 raster::image<float> step(std::size_t at, float height) {
@@ -60,3 +62,5 @@ TEST_CASE("flat, tiny and empty pictures have no edge") {
   CHECK(count(raster::canny(raster::image<float>(2, 2, 3).view())) == 0);
   CHECK(raster::canny(raster::image<float>().view()).empty());
 }
+
+}  // namespace test_canny

@@ -10,6 +10,8 @@ using namespace aib;
 using doctest::Approx;
 using raster::rgb;
 
+namespace test_colormap {
+
 namespace {
 
 double distance(const rgb& a, const rgb& b) {
@@ -54,3 +56,5 @@ TEST_CASE("numbers beyond the ends, and NaN, have the colour of an end") {
   CHECK(raster::diverging_color(-7) == raster::diverging_color(-1));
   CHECK(raster::diverging_color(NAN) == raster::diverging_color(0));
 }
+
+}  // namespace test_colormap

@@ -7,6 +7,8 @@
 using namespace aib;
 using raster::nearest_rule;
 
+namespace test_downsample {
+
 TEST_CASE("the centre rule takes the pixel under the centre, the floor rule OpenCV's") {
   CHECK(raster::nearest_index(0, 480, 160, nearest_rule::centre) == 1);
   CHECK(raster::nearest_index(0, 480, 160, nearest_rule::floor) == 0);
@@ -39,3 +41,5 @@ TEST_CASE("an empty image or target is refused") {
   CHECK_THROWS_AS(raster::resample_nearest<int>(raster::image<int>(2, 2).view(), 0, 2),
                   argument_error);
 }
+
+}  // namespace test_downsample

@@ -11,6 +11,8 @@ using namespace aib;
 using raster::color_image;
 using raster::rgb;
 
+namespace test_draw {
+
 namespace {
 
 constexpr rgb black = {0, 0, 0}, white = {255, 255, 255}, red = {255, 0, 0};
@@ -56,3 +58,5 @@ TEST_CASE("a contact sheet sets pictures in rows on white") {
   CHECK(count(sheet, red) == 5 * 20 * 10);
   CHECK(raster::contact_sheet({}, 3, 20).empty());
 }
+
+}  // namespace test_draw

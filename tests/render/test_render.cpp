@@ -27,6 +27,8 @@
 
 using namespace aib;
 
+namespace test_render {
+
 namespace {
 
 /// The cube [-half, half]^3, two triangles a side, labels 0..5: -x, +x, -y, +y, -z, +z.
@@ -333,3 +335,5 @@ TEST_CASE("depth equals Blender's, but for rays that pass an edge by a 500th of 
   }
 }
 #endif
+
+}  // namespace test_render

@@ -14,6 +14,8 @@
 
 using namespace aib;
 
+namespace test_mesh {
+
 namespace {
 
 /// Two triangles: one of area 3 in the plane z = 0, labelled 5, one of area 1 in the plane x = 0,
@@ -91,3 +93,5 @@ TEST_CASE("two samplings of one surface lie as far apart as Open3D's do") {
   CHECK(a.floor == doctest::Approx(1.1835976825500196));
   CHECK(cloud::distances(a.points, b.points).mean() == doctest::Approx(1.1468).epsilon(0.03));
 }
+
+}  // namespace test_mesh

@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_point_map {
+
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -40,3 +42,5 @@ TEST_CASE("points of a point map are kept strictly above a confidence") {
 TEST_CASE("a point map of another size is refused") {
   CHECK_THROWS_AS(sample::place_point_map(four_points, 3, 2, pose), argument_error);
 }
+
+}  // namespace test_point_map

@@ -15,6 +15,8 @@
 
 using namespace aib;
 
+namespace test_thin {
+
 namespace {
 
 mesh::mesh square() {
@@ -82,3 +84,5 @@ TEST_CASE("elimination refuses what it cannot do and leaves few points alone") {
                   argument_error);
   CHECK_THROWS_AS(sample::mesh(square(), {.method = sample::spread::poisson}), argument_error);
 }
+
+}  // namespace test_thin

@@ -14,6 +14,8 @@ using namespace aib;
 using doctest::Approx;
 using sample::confidence_rule;
 
+namespace test_unproject {
+
 namespace {
 
 depth::depth_map flat(std::size_t width, std::size_t height, float depth) {
@@ -143,3 +145,5 @@ TEST_CASE("what does not fit together is refused") {
   CHECK_THROWS_AS((void)sample::unproject(map, camera, nowhere), argument_error);
   CHECK(sample::unproject({}, camera, {}).points.empty());
 }
+
+}  // namespace test_unproject

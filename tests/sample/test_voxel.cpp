@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_voxel {
+
 namespace {
 
 cloud::cloud four_points() {
@@ -62,3 +64,5 @@ TEST_CASE("voxels: map coordinates, threads, nothing, and what is refused") {
   CHECK_THROWS_AS(static_cast<void>(sample::voxel(c, {.size = 0})), argument_error);
   CHECK_THROWS_AS(static_cast<void>(sample::voxel(c, {.size = 1e-300})), argument_error);
 }
+
+}  // namespace test_voxel

@@ -10,6 +10,8 @@
 
 using namespace aib;
 
+namespace test_voxel_grid {
+
 namespace {
 
 cloud::cloud noise(std::size_t n, std::uint64_t seed, const Eigen::Vector3d& origin) {
@@ -71,3 +73,5 @@ TEST_CASE("a cloud without colours leaves the grid without") {
   grid.add(plain);
   CHECK(grid.result().colors.empty());
 }
+
+}  // namespace test_voxel_grid

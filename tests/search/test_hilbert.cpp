@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_hilbert {
+
 TEST_CASE("the curve visits each cell once and always steps to a neighbour") {
   for (const int bits : {2, 4}) {
     const auto side = std::uint32_t{1} << bits;
@@ -32,3 +34,5 @@ TEST_CASE("the curve visits each cell once and always steps to a neighbour") {
     }
   }
 }
+
+}  // namespace test_hilbert

@@ -18,6 +18,8 @@
 using namespace aib;
 using points = std::vector<Eigen::Vector3f>;
 
+namespace test_nearest {
+
 namespace {
 
 std::vector<float> brute_force(const points& from, const points& to) {
@@ -201,3 +203,5 @@ TEST_CASE("nearest neighbours equal nanoflann's, many points, also in map coordi
   for (auto& p : far_reference) p += utm;
   CHECK(tree_search(far_estimate, far_reference) == by_nanoflann(far_estimate, far_reference));
 }
+
+}  // namespace test_nearest

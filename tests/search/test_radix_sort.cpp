@@ -11,6 +11,8 @@
 
 using namespace aib;
 
+namespace test_radix_sort {
+
 TEST_CASE("words are sorted by some of their bits, equal ones keep their order") {
   for (const std::size_t n : {0u, 1u, 1000u, 50000u}) {
     for (const unsigned threads : {1u, 3u}) {
@@ -26,3 +28,5 @@ TEST_CASE("words are sorted by some of their bits, equal ones keep their order")
     }
   }
 }
+
+}  // namespace test_radix_sort

@@ -11,6 +11,8 @@
 using namespace aib;
 using doctest::Approx;
 
+namespace test_bootstrap {
+
 namespace {
 
 /// x[i] = 0.9 x[i - 1] + noise: neighbours are alike.
@@ -63,3 +65,5 @@ TEST_CASE("no values and senseless options are refused") {
   CHECK_THROWS_AS((void)stats::bootstrap_mean(x, {.block = 0}), argument_error);
   CHECK_THROWS_AS((void)stats::bootstrap_mean(x, {.level = 1}), argument_error);
 }
+
+}  // namespace test_bootstrap

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_histogram {
+
 TEST_CASE("a bin holds its lower edge, values outside are counted") {
   stats::histogram h(0, 4, 4);
   for (const double x : {-0.1, 0., 0.9, 1., 3.999, 4., std::numeric_limits<double>::quiet_NaN()})
@@ -28,3 +30,5 @@ TEST_CASE("histograms of equal bins merge, others do not") {
   CHECK_THROWS_AS(a += other, argument_error);
   CHECK_THROWS_AS(stats::histogram(1, 1, 2), argument_error);
 }
+
+}  // namespace test_histogram

@@ -9,6 +9,8 @@
 
 using namespace aib;
 
+namespace test_moments {
+
 TEST_CASE("moments of 1, 2, 3, 4") {
   stats::moments m;
   for (const double x : {1., 2., 3., 4.}) m.add(x);
@@ -43,3 +45,5 @@ TEST_CASE("merged parts equal the whole") {
   CHECK(none.min() == whole.min());
   CHECK(none.max() == whole.max());
 }
+
+}  // namespace test_moments

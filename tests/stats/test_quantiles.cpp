@@ -6,6 +6,8 @@
 
 using namespace aib;
 
+namespace test_quantiles {
+
 TEST_CASE("quantiles of an even number of values follow their rule") {
   const std::vector<double> v{4, 1, 3, 2};
   const std::span<const double> s(v);
@@ -23,3 +25,5 @@ TEST_CASE("a quantile of nothing is undefined, outside [0, 1] it is refused") {
   const std::vector<float> v{1};
   CHECK_THROWS_AS(stats::quantile(std::span<const float>(v), 1.5), argument_error);
 }
+
+}  // namespace test_quantiles

@@ -8,6 +8,8 @@
 
 using namespace aib;
 
+namespace test_summary {
+
 TEST_CASE("the statistics of 3 and 4") {
   const std::vector<double> errors{3, 4};
   const auto s = stats::summarize(errors);
@@ -21,3 +23,5 @@ TEST_CASE("the statistics of 3 and 4") {
   CHECK(s.sse == 25);
   CHECK_THROWS_AS(stats::summarize({}), undefined_error);
 }
+
+}  // namespace test_summary

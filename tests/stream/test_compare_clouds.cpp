@@ -17,6 +17,8 @@
 
 using namespace aib;
 
+namespace test_compare_clouds {
+
 namespace {
 
 constexpr std::uint64_t little = std::uint64_t{16} << 20;
@@ -127,3 +129,5 @@ TEST_CASE("what cannot be compared is refused, a stop stops, progress ends at 1"
       (void)stream::compare_clouds(e, e, {.compare = {.control = {.stop = stop.get_token()}}}),
       stopped_error);
 }
+
+}  // namespace test_compare_clouds

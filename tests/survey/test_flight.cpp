@@ -20,6 +20,8 @@
 
 using namespace aib;
 
+namespace test_flight {
+
 namespace {
 
 /// A box along the axes from corner to corner, faces outwards; labels 0 walls, 1 top and bottom.
@@ -249,3 +251,5 @@ TEST_CASE("the camera aims along the normal, no faster than the gimbal turns") {
   CHECK(angle_between(t.world_from_camera.back(), turning.at(1)) < 1e-6);
   CHECK(slow.duration_s == doctest::Approx(20));
 }
+
+}  // namespace test_flight

@@ -17,6 +17,8 @@
 
 using namespace aib;
 
+namespace test_noise {
+
 namespace {
 
 struct moments {
@@ -216,3 +218,5 @@ TEST_CASE("intrinsics drift by shares of the focal length") {
   const math::camera sphere{math::camera_model::equirectangular, 8, 4, {8, 4}};
   CHECK_THROWS_AS(static_cast<void>(survey::perturb_camera(sphere, 1, {})), argument_error);
 }
+
+}  // namespace test_noise
