@@ -16,8 +16,10 @@ local format_help <const> = {
 }
 
 --- Names that no input can have.
-M.reserved = { help = true, quiet = true }
+M.reserved = { help = true, quiet = true, threads = true, sandbox = true }
 for _, format in ipairs(formats) do M.reserved[format] = true end
+
+local threads <const> = { key = "threads", kind = "integer", min = 0, max = 65536 }
 
 local function by_option_name(protocol)
   local known = {}
@@ -26,7 +28,7 @@ local function by_option_name(protocol)
 end
 
 local function option_names(protocol)
-  local names = { "--help", "--quiet" }
+  local names = { "--help", "--quiet", "--threads" }
   for _, format in ipairs(formats) do names[#names + 1] = "--" .. format end
   for _, input in ipairs(protocol.inputs) do names[#names + 1] = "--" .. input.key:gsub("_", "-") end
   table.sort(names)
@@ -74,6 +76,11 @@ function parser:common_option(key, value)
   if key == "help" or key == "quiet" then
     if value then wrong(("--%s takes no value, found '%s'"):format(key, value)) end
     self.call[key] = true
+    return
+  end
+  if key == "sandbox" then wrong("--sandbox goes before the name: aib-lua --sandbox " .. self.protocol.name) end
+  if key == "threads" then
+    self.call.threads = inputs.value(threads, value or self:next_value(key), wrong)
     return
   end
   local path = value or self:next_value(key)
@@ -134,8 +141,8 @@ local function in_places(protocol)
   return places
 end
 
---- The call that the arguments make: { inputs = values by name, outputs = path by format, help =, quiet = }. Raises
---- { usage = sentence } where they are not understood.
+--- The call that the arguments make: { inputs = values by name, outputs = path by format, help =, quiet =, threads = }.
+--- Raises { usage = sentence } where they are not understood.
 function M.parse(protocol, arguments)
   local self = setmetatable({
     protocol = protocol, arguments = arguments, at = 0, unnamed = {}, places = in_places(protocol),
@@ -204,6 +211,7 @@ function M.help(protocol)
   out[#out + 1] = "\nresults:"
   for _, format in ipairs(formats) do add_lines(out, ("--%s FILE"):format(format), format_help[format]) end
   add_lines(out, "--quiet", "print nothing but errors")
+  add_lines(out, "--threads N", "threads of the library (0, the default: all)")
   if protocol.cite then out[#out + 1] = "\ncite: " .. protocol.cite end
   return table.concat(out, "\n") .. "\n"
 end

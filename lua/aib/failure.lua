@@ -20,6 +20,9 @@ end
 --- The kind of an error value that was caught.
 function M.kind(caught) return aib.error_kind(tostring(caught)) end
 
+--- Whether an error value says that there was no memory left.
+function M.is_memory(caught) return tostring(caught):find("not enough memory$") ~= nil end
+
 --- The text of an error value without the script position in front of it.
 function M.message(caught)
   local text = tostring(caught)

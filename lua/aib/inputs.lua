@@ -144,18 +144,45 @@ local function parsed(text, input, wrong)
   return list
 end
 
+local field_types <const> = {
+  kind = "string", unit = "string", min = "number", max = "number", choices = "table", of = "string",
+  position = "number", help = "string",
+}
+
+local function mistake_in_kind(kind)
+  if lua_types[kind] then return end
+  return ("unknown kind '%s'%s"):format(tostring(kind), suggest.hint(tostring(kind), suggest.keys(lua_types)))
+end
+
+local function mistake_in_choices(choices)
+  if type(choices) ~= "table" or #choices == 0 then return "choices: a list of names expected" end
+  for _, name in ipairs(choices) do
+    if type(name) ~= "string" then return "choices: names expected, found " .. type(name) end
+  end
+end
+
+--- What is wrong with the fields of a declaration, nil where nothing is.
+local function mistake_in(input)
+  local mistake = suggest.unknown_key(input, fields) or mistake_in_kind(input.kind)
+  if mistake then return mistake end
+  for _, name in ipairs(suggest.keys(field_types)) do
+    local found_type = type(input[name])
+    if found_type ~= "nil" and found_type ~= field_types[name] then
+      return ("%s: a %s expected, found %s"):format(name, field_types[name], found_type)
+    end
+  end
+  if input.of == "list" then return "of: a kind of one value expected, found 'list'" end
+  if input.of ~= nil and mistake_in_kind(input.of) then return mistake_in_kind(input.of) end
+  if input.kind == "choice" or input.of == "choice" then return mistake_in_choices(input.choices) end
+end
+
 --- Throws an error at `level` where a declaration is wrong; returns it with every field in its full form.
 function M.declare(key, input, level)
   local function wrong(sentence) error(("aib.protocol: input '%s': %s"):format(key, sentence), level + 2) end
   if type(key) ~= "string" or not key:find("^%a[%w_]*$") then wrong("a name of letters, digits and _ expected") end
   if type(input) ~= "table" then wrong("a table expected, found " .. type(input)) end
-  local mistake = suggest.unknown_key(input, fields)
+  local mistake = mistake_in(input)
   if mistake then wrong(mistake) end
-  local kinds = suggest.keys(lua_types)
-  if not lua_types[input.kind] then
-    wrong(("unknown kind '%s'%s"):format(tostring(input.kind), suggest.hint(tostring(input.kind), kinds)))
-  end
-  if input.kind == "choice" and type(input.choices) ~= "table" then wrong("choices: a list of names expected") end
   local copy = { key = key }
   for name, value in pairs(input) do copy[name] = value end
   if copy.kind == "flag" and copy.default == nil then copy.default = false end
@@ -187,7 +214,13 @@ function M.label(input)
   return "--" .. input.key:gsub("_", "-")
 end
 
---- The value of a command line's text. `wrong(sentence)` raises.
+--- The value of a command line's text, checked. `wrong(sentence)` raises.
+function M.value(input, text, wrong)
+  local function say(sentence) wrong(M.label(input) .. ": " .. sentence) end
+  return checked(parsed(text, input, say), input, say)
+end
+
+--- The value of a command line's text, to be checked by `complete`. `wrong(sentence)` raises.
 function M.parse(input, text, wrong)
   return parsed(text, input, function(sentence) wrong(M.label(input) .. ": " .. sentence) end)
 end

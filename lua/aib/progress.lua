@@ -59,6 +59,12 @@ local M = {
   quiet = false,
 }
 
+--- Shows nothing from now on, neither this nor how far a long call of the library is.
+function M.silence()
+  M.quiet = true
+  system.silence()
+end
+
 --- Progress over `total` steps, called `noun`. `sink` replaces stderr and the clock, for tests:
 --- { write = function, clock = function, redraws = boolean }
 function M.new(total, noun, sink)

@@ -100,12 +100,14 @@ local function traced(value) return { value = value, trace = debug.traceback(tos
 
 --- Says what went wrong: a sentence, and a trace for mistakes of the script. Returns the exit code.
 local function explain(self, caught)
+  if type(caught) == "string" then caught = { value = caught, trace = caught } end  -- Lua had no memory for the trace
   if type(caught.value) == "table" and caught.value.usage then
     print_error(("%s: %s (see --help)"):format(self.name, caught.value.usage))
     return exit.usage
   end
   local code = exit_of_kind[failure.kind(caught.value)]
-  print_error(code and self.name .. ": " .. failure.message(caught.value) or caught.trace)
+  local needs_trace = not code and not failure.is_memory(caught.value)
+  print_error(needs_trace and caught.trace or self.name .. ": " .. failure.message(caught.value))
   return code or exit.script
 end
 
@@ -115,7 +117,9 @@ function protocol:main(arguments)
   local call, report
   local ok, caught = xpcall(function()
     call = command_line.parse(self, arguments)
-    progress.quiet = progress.quiet or call.quiet
+    if call.quiet then progress.silence() end
+    if call.threads then aib.system.use_threads(call.threads) end
+    if call.threads then aib.system.use_threads(call.threads) end
     if not call.help then report = self:run(call.inputs, { draw = call.outputs.html ~= nil }) end
   end, traced)
   if not ok then return explain(self, caught) end
@@ -125,7 +129,7 @@ function protocol:main(arguments)
   end
   ok, caught = xpcall(command_line.show, traced, report, call)
   if ok then return exit.ok end
-  print_error(self.name .. ": " .. failure.message(caught.value))
+  explain(self, caught)
   return exit.script
 end
 

@@ -46,7 +46,6 @@ io::depth_options reading_option(lua_State* state, options& o, const char* name)
   io::depth_options read;
   const auto table = o.get<sol::table>(name);
   if (!table) return read;
-  const sol::stack_guard guard(state);
   table->push();
   const std::string function = "aib.depth.evaluate", argument = name;
   options inner(state, lua_gettop(state), function, {function, place::option, argument});

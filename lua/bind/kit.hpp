@@ -13,6 +13,7 @@
 
 #include "kit/function.hpp"
 #include "kit/guard.hpp"
+#include "kit/meter.hpp"
 #include "kit/module.hpp"
 #include "kit/options.hpp"
 #include "kit/point.hpp"

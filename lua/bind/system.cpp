@@ -106,7 +106,8 @@ void bind_system(lua_State* state) {
   module system(state, "system");
   bind_files(system);
   bind_terminal(system);
-  system
+  system.function("use_threads", {"n"}, [](session& s, unsigned n) { s.threads = n; })
+      .function("silence", {}, [](session& s) { s.control.progress = nullptr; })
       .function("suggestion", {"name", "known"},
                 [](const std::string& name, const std::vector<std::string>& known) {
                   return suggestion(name, known);

@@ -4,6 +4,7 @@
 
 #include "../bind/kit.hpp"
 #include <algorithm>
+#include <clocale>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,7 +73,25 @@ int define(lua_State* state) {
   return 0;
 }
 
+/// os.setlocale. Upvalue: the original.
+int set_locale(lua_State* state) {
+  lua_pushvalue(state, lua_upvalueindex(1));
+  lua_insert(state, 1);
+  lua_call(state, lua_gettop(state) - 1, 1);
+  std::setlocale(LC_NUMERIC, "C");
+  std::setlocale(LC_COLLATE, "C");
+  return 1;
+}
+
 }  // namespace
+
+void keep_results_plain(lua_State* state) {
+  lua_getglobal(state, "os");
+  lua_getfield(state, -1, "setlocale");
+  lua_pushcclosure(state, set_locale, 1);
+  lua_setfield(state, -2, "setlocale");
+  lua_pop(state, 1);
+}
 
 void make_globals_strict(lua_State* state) {
   lua_pushglobaltable(state);

@@ -9,6 +9,7 @@
 #include "interrupt.hpp"
 #include <cstdio>
 #include <cstdlib>
+#include <unistd.h>
 #include <utility>
 
 namespace aib::shell {
@@ -17,14 +18,17 @@ namespace {
 
 using bind::error_kind;
 
-/// Error handler: mistakes of a script get a trace, a bad file is said in its sentence alone.
+/// Error handler: mistakes of a script get a trace; a bad file, and a lack of memory, are said in
+/// their sentence alone.
 int explain(lua_State* state) {
   if (lua_type(state, 1) != LUA_TSTRING) {
     luaL_tolstring(state, 1, nullptr);
     return 1;
   }
-  const error_kind kind = bind::session::of(state).kind_of(bind::value<std::string>::get(state, 1));
+  const std::string text = bind::value<std::string>::get(state, 1);
+  const error_kind kind = bind::session::of(state).kind_of(text);
   if (kind == error_kind::io || kind == error_kind::format || kind == error_kind::stopped) return 1;
+  if (text.ends_with("not enough memory")) return 1;
   luaL_traceback(state, state, lua_tostring(state, 1), 1);
   return 1;
 }
@@ -83,17 +87,20 @@ void warn(void* on, const char* text, int to_be_continued) {
 
 void print_error(std::string_view text) {
   std::fflush(stdout);
-  std::fprintf(stderr, "aib-lua: %.*s\n", static_cast<int>(text.size()), text.data());
+  const std::string line = message("aib-lua: ", text, "\n");
+  std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 interpreter::interpreter(bool ignore_environment, std::size_t memory)
     : memory_left_(memory), lua_(sol::default_at_panic, allocate, &memory_left_) {
   lua_setwarnf(state(), warn, &warnings_shown_);
   session_.attach(state());
+  if (isatty(STDERR_FILENO)) session_.control.progress = bind::meter();
   if (ignore_environment) lua_.registry()["LUA_NOENV"] = true;
   lua_.open_libraries();
   bind::bind_all(state());
   serve_embedded_modules(state());
+  keep_results_plain(state());
   make_globals_strict(state());
 }
 
@@ -149,7 +156,7 @@ std::string interpreter::title_of(const std::filesystem::path& script) {
 
 void interpreter::silence() {
   const auto require = lua_.get<sol::protected_function>("require");
-  require("aib.progress").get<sol::table>()["quiet"] = true;
+  require("aib.progress").get<sol::table>().get<sol::protected_function>("silence")();
 }
 
 /// `require` finds modules beside the script.

@@ -10,7 +10,10 @@
 #include "protocols.hpp"
 #include "repl.hpp"
 #include "sandbox.hpp"
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <unistd.h>
@@ -106,11 +109,19 @@ int run(const invocation& call) {
   return converse(lua);
 }
 
+/// What was printed is there, or the run has failed.
+int checked_output(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  std::fprintf(stderr, "aib-lua: standard output: cannot write: %s\n", std::strerror(errno));
+  return code == exit_ok ? exit_script : code;
+}
+
 }  // namespace
 
 int run(const std::vector<std::string>& words) {
+  std::signal(SIGXFSZ, SIG_IGN);  // then a write fails, which is told
   try {
-    return run(parse(words));
+    return checked_output(run(parse(words)));
   } catch (const usage_error& e) {
     print_error(message(e.what(), "\ntry aib-lua --help"));
     return exit_usage;

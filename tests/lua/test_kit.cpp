@@ -4,6 +4,7 @@
 
 #include <bind/kit.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -265,6 +266,19 @@ TEST_CASE("the collector knows the real size of objects") {
   lua run;
   run("for i = 1, 100 do m.box(16 * 2^20) end");  // 64 MiB each
   CHECK(run.session().held() <= std::size_t{512} << 20);
+}
+
+TEST_CASE("a long call says how far it is, now and then, and cleans up; a short one says nothing") {
+  double now = 0;
+  std::string written;
+  bind::meter meter([&] { return now; }, [&](std::string_view text) { written += text; });
+  for (const double share : {0.1, 0.5, 1.0}) meter(share);
+  CHECK(written.empty());
+  for (const double share : {0.1, 0.25, 0.26, 0.27, 1.0, 0.5}) {
+    meter(share);
+    now += share < 0.26 ? 1 : 0.1;
+  }
+  CHECK(written == "\0337\033[K  25 %\0338\0337\033[K  26 %\0338\033[K");
 }
 
 TEST_CASE("a name near to none is answered with the list") {

@@ -45,6 +45,13 @@ return aib.test {
     })
   end,
 
+  ["silence is for what follows, and for the library"] = function(t)
+    local before = aib.progress.quiet
+    aib.progress.silence()
+    t:equal(aib.progress.quiet, true)
+    aib.progress.quiet = before
+  end,
+
   ["quiet is silent"] = function(t)
     local before = aib.progress.quiet
     aib.progress.quiet = true

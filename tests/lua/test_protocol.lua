@@ -108,6 +108,13 @@ return aib.test {
     t:contains(refusal(t, inputs, { "a", "--json" }), "--json: a value is missing")
     t:contains(refusal(t, inputs, { "a", "--quiet=1" }), "--quiet takes no value")
     t:contains(refusal(t, inputs, { "a", "--json", "/no/such/x.json" }), "--json: /no/such: no such folder")
+    t:contains(refusal(t, inputs, { "a", "--json=" }), "--json: '': no such folder")
+    t:contains(refusal(t, inputs, { "a", "--help=1" }), "--help takes no value, found '1'")
+    t:contains(refusal(t, inputs, { "a", "--est" }), "--est: a value is missing")
+    t:contains(refusal(t, inputs, { "a", "--threads" }), "--threads: a value is missing")
+    t:contains(refusal(t, inputs, { "a", "--threads=two" }), "--threads: an integer expected, found 'two'")
+    t:contains(refusal(t, inputs, { "a", "--threads", "-1" }), "--threads: at least 0 expected, found '-1'")
+    t:contains(refusal(t, inputs, { "a", "--sandbox" }), "--sandbox goes before the name: aib-lua --sandbox demo")
   end,
 
   ["a file that is not there is a bad input"] = function(t)
@@ -145,6 +152,7 @@ results:
   --latex FILE            the tables as LaTeX (booktabs)
   --html FILE             the tables as a page
   --quiet                 print nothing but errors
+  --threads N             threads of the library (0, the default: all)
 
 cite: Nobody 2026
 ]])
@@ -163,10 +171,21 @@ cite: Nobody 2026
     t:raises("input 'a': unknown kind 'fiel', did you mean 'file'?", input("a", { kind = "fiel" }))
     t:raises("input 'a': unknown field 'hlep', did you mean 'help'?", input("a", { kind = "file", hlep = "x" }))
     t:raises("input 'a': choices: a list of names expected", input("a", { kind = "choice" }))
+    t:raises("input 'a': choices: a list of names expected", input("a", { kind = "list", of = "choice", choices = {} }))
+    t:raises("input 'a': choices: names expected, found number", input("a", { kind = "choice", choices = { 1 } }))
+    t:raises("input 'a': unknown kind 'fiel', did you mean 'file'?", input("a", { kind = "list", of = "fiel" }))
+    t:raises("input 'a': of: a kind of one value expected", input("a", { kind = "list", of = "list" }))
+    t:raises("input 'a': min: a number expected, found string", input("a", { kind = "number", min = "0" }))
+    t:raises("input 'a': help: a string expected, found number", input("a", { kind = "number", help = 3 }))
     t:raises("input 'a': an integer expected, found string", input("a", { kind = "integer", default = "3" }))
     t:raises("input 'json': the name is taken", input("json", { kind = "file" }))
     t:raises("input 'a b': a name of letters, digits and _ expected", input("a b", { kind = "file" }))
     t:raises("test_protocol.lua:", input("a", { kind = "fiel" }))
+    t:raises("aib.protocol: a table expected, found nil", aib.protocol)
+    t:raises("aib.protocol: help: a string expected, found number", declare { name = "x", run = run, help = 3 })
+    t:raises("input 'a': a table expected, found string", input("a", "file"))
+    t:raises("input 'a': a list expected, found string", input("a", { kind = "list", default = "x" }))
+    t:raises("input 'threads': the name is taken by every protocol's --threads", input("threads", { kind = "integer" }))
   end,
 
   ["an undefined metric is a dash with a note and no failure"] = function(t)
@@ -206,6 +225,14 @@ cite: Nobody 2026
     t:equal(out, "")
     t:equal(err, "demo: /no/such/file: cannot open: No such file or directory\n")
     t:check(not aib.system.is_file(scratch))
+  end,
+
+  ["a lack of memory is a sentence, whoever lacks it"] = function(t)
+    for _, text in ipairs { "not enough memory", "p.lua:3: not enough memory" } do
+      local code, _, err = call(protocol_with({}, function() error(text, 0) end), {})
+      t:equal(code, 1)
+      t:equal(err, "demo: not enough memory\n")
+    end
   end,
 
   ["every format is written, and quiet prints nothing"] = function(t)

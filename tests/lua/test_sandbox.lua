@@ -186,5 +186,8 @@ return aib.test {
     usage("--sandbox -e 'print(1)' x.lua", "--sandbox: a script expected, without -e, -l, -W and -i")
     usage("--read / x.lua", "--read is for --sandbox, which is not given")
     usage("--sandbox --memory much x.lua", "--memory: a number of MB expected, found 'much'")
+    usage("--sandbox --seconds -1 x.lua", "--seconds: a number of seconds expected, found '-1'")
+    usage("--sandbox --instructions 1e9 x.lua", "--instructions: a number of instructions expected, found '1e9'")
+    usage("--sandbox --read", "--read: a value expected, found nothing")
   end,
 }

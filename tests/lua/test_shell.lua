@@ -113,6 +113,22 @@ return aib.test {
     t:contains(run { "--list" }, "asset_inspection")
   end,
 
+  ["a protocol takes the shell's flags after its name, too"] = function(t)
+    local source = "local aib = require 'aib' return aib.protocol { name = 'p', inputs = {}, "
+      .. "run = function(_, report) report:add('x', 1) end }"
+    local folder <close> = folder_with { ["p.lua"] = source }
+    local script = folder.path .. "/p.lua"
+    expect(t, { script, "--threads", "1", "--quiet" }, "", 0)
+    expect(t, { "--threads", "1", "--quiet", script, "--quiet" }, "", 0)
+    expect(t, { script, "--sandbox" }, "p: --sandbox goes before the name: aib-lua --sandbox p (see --help)\n", 2)
+  end,
+
+  ["numbers keep their point whatever locale a script asks for"] = function(t)
+    local code = "os.setlocale('') os.setlocale('C.UTF-8', 'numeric') print(1.5, tonumber '1.5')"
+    expect(t, { "-e", code }, "1.5\t1.5\n", 0)
+    expect(t, { "-e", "print(os.setlocale('no such locale'), os.setlocale('C'))" }, "nil\tC\n", 0)
+  end,
+
   ["Ctrl-C stops Lua code, also where it catches errors, with exit code 130"] = function(t)
     for _, code in ipairs { "while true do end", "while true do pcall(function() while true do end end) end" } do
       local command = ("timeout --preserve-status --signal=INT 0.2 %s -e %s"):format(quoted(program), quoted(code))

@@ -6,7 +6,9 @@
 
 #include "session.hpp"
 #include <exception>
+#include <filesystem>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 namespace aib::bind {
@@ -35,7 +37,12 @@ int guard(lua_State* state, Body&& body) {
     push_error(state, error_kind::undefined, e.what());
   } catch (const stopped_error& e) {
     push_error(state, error_kind::stopped, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    push_error(state, error_kind::io,
+               message(e.path1().string(), ": ", e.code().message()).c_str());
   } catch (const std::bad_alloc&) {
+    push_error(state, error_kind::internal, "not enough memory");
+  } catch (const std::length_error&) {  // more elements than there are addresses
     push_error(state, error_kind::internal, "not enough memory");
   } catch (const std::exception& e) {
     push_error(state, error_kind::internal, e.what());

@@ -4,6 +4,7 @@
 
 #include "guard.hpp"
 #include "show.hpp"
+#include <cmath>
 
 namespace aib::bind {
 
@@ -43,6 +44,8 @@ record::record(lua_State* state) : state_(state) {
 record keyed(lua_State* state, std::span<const double> keys, std::span<const double> values) {
   if (keys.size() != values.size())
     throw argument_error(message("keyed: ", keys.size(), " keys, ", values.size(), " values"));
+  for (const double key : keys)
+    if (std::isnan(key)) throw argument_error("a threshold is not a number (NaN)");
   record r(state);
   r.table().push();
   for (std::size_t i = 0; i < keys.size(); ++i) {

@@ -18,7 +18,6 @@ class record {
 
   template <class T>
   record& set(const char* name, T&& field) {
-    const sol::stack_guard guard(state_);
     table_.push();
     bind::push(state_, std::forward<T>(field));
     lua_setfield(state_, -2, name);

@@ -4,6 +4,20 @@
 
 namespace aib::bind {
 
+namespace {
+
+/// Control characters as Lua writes them: "\\0".
+std::string printable(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    code < 32 || code == 127 ? out += message("\\", int{code}) : out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string describe(lua_State* state, int index) {
   switch (lua_type(state, index)) {
     case LUA_TNONE:
@@ -13,7 +27,7 @@ std::string describe(lua_State* state, int index) {
                                          : message("number ", lua_tonumber(state, index));
     case LUA_TSTRING: {
       const std::string text = value<std::string>::get(state, index);
-      return message("string '", text.substr(0, 40), text.size() > 40 ? "..." : "", "'");
+      return message("string '", printable(text.substr(0, 40)), text.size() > 40 ? "..." : "", "'");
     }
     default:
       return type_name(state, index);

@@ -173,10 +173,14 @@ struct value<std::string_view> {
   }
 };
 
+/// A zero byte would end the name for the system, which would find another file.
 template <>
 struct value<std::filesystem::path> {
   static std::string expected() { return "path (string)"; }
-  static bool is(lua_State* state, int index) { return value<std::string>::is(state, index); }
+  static bool is(lua_State* state, int index) {
+    return value<std::string>::is(state, index) &&
+           value<std::string>::get(state, index).find('\0') == std::string::npos;
+  }
   static std::filesystem::path get(lua_State* state, int index) {
     return value<std::string>::get(state, index);
   }

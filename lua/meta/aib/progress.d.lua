@@ -16,6 +16,9 @@ function instance:step(what) end
 ---Ends it; `local progress <close> = aib.progress(...)` does so by itself.
 function instance:close() end
 
+---Shows nothing from now on, neither this nor how far a long call of the library is.
+function progress.silence() end
+
 ---Progress over `total` steps, called `noun`: `aib.progress(#units, "units")` is the same.
 ---@param total integer
 ---@param noun? string

@@ -59,6 +59,13 @@ function system.is_terminal(stream) end
 ---@return integer
 function system.columns(stream) end
 
+---The library's calls say no more how far they are.
+function system.silence() end
+
+---How many threads the library uses from now on; 0: all.
+---@param n integer
+function system.use_threads(n) end
+
 ---What to add to "unknown X 'name'": the nearest of the known names, or all of them.
 ---@param name string
 ---@param known string[]
