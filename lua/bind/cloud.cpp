@@ -183,6 +183,24 @@ cloud::cloud crop(const cloud::cloud& c, const sol::table& volume) {
       "(bounding_polygon ...), a plane or a grid expected");
 }
 
+record summary_of(lua_State* state, const cloud::cloud& c) {
+  const auto finite = std::count_if(c.points.begin(), c.points.end(),
+                                    [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  record r = as_record(state, cloud::bounds(c));
+  r.set("n", c.size()).set("n_finite", finite).set("has_normals", !c.normals.empty());
+  return r.set("has_colors", !c.colors.empty()).set("has_labels", !c.labels.empty());
+}
+
+record summary_of(lua_State* state, const distances& d) {
+  record r(state);
+  r.set("n", d.size()).set("n_dropped", d.n_dropped()).set("n_beyond", d.n_beyond());
+  if (d.n_finite() == d.n_beyond()) return r;
+  return r.set("mean", d.mean())
+      .set("median", d.median())
+      .set("rmse", d.rmse())
+      .set("max", d.max());
+}
+
 void bind_cloud_type(lua_State* state) {
   type<cloud::cloud>(state, "cloud", print_cloud, bytes_of_cloud)
       .length([](const cloud::cloud& c) { return c.size(); })
@@ -194,6 +212,7 @@ void bind_cloud_type(lua_State* state) {
       .field("warnings", [](const cloud::cloud& c) { return c.warnings; })
       .method("bounds", {},
               [](lua_State* l, const cloud::cloud& c) { return as_record(l, cloud::bounds(c)); })
+      .method("summary", {}, [](lua_State* l, const cloud::cloud& c) { return summary_of(l, c); })
       .method("label", {"index"},
               [](const cloud::cloud& c, std::size_t index) {
                 if (index == 0 || index > c.labels.size()) {
@@ -212,6 +231,7 @@ void bind_distances_type(lua_State* state) {
       .element([](const distances& d, std::size_t i) { return d[i]; })
       .field("n_dropped", [](const distances& d) { return d.n_dropped(); })
       .field("n_beyond", [](const distances& d) { return d.n_beyond(); })
+      .method("summary", {}, [](lua_State* l, const distances& d) { return summary_of(l, d); })
       .method("mean", {}, [](const distances& d) { return d.mean(); })
       .method("median", {}, [](const distances& d) { return d.median(); })
       .method("rmse", {}, [](const distances& d) { return d.rmse(); })

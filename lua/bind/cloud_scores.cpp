@@ -45,11 +45,20 @@ std::string print_offsets(const offsets& o) {
 
 std::size_t bytes_of_offsets(const offsets& o) { return o.size() * sizeof(float); }
 
+record summary_of(lua_State* state, const offsets& o) {
+  record r(state);
+  r.set("n", o.size()).set("n_dropped", o.n_dropped());
+  if (o.n_finite() == 0) return r;
+  r.set("mean", o.mean()).set("mean_absolute", o.mean_absolute()).set("median", o.median());
+  return r.set("deviation", o.deviation());
+}
+
 void bind_offsets_type(lua_State* state) {
   type<offsets>(state, "offsets", print_offsets, bytes_of_offsets)
       .length([](const offsets& o) { return o.size(); })
       .element([](const offsets& o, std::size_t i) { return o[i]; })
       .field("n_dropped", [](const offsets& o) { return o.n_dropped(); })
+      .method("summary", {}, [](lua_State* l, const offsets& o) { return summary_of(l, o); })
       .method("mean", {}, [](const offsets& o) { return o.mean(); })
       .method("mean_absolute", {}, [](const offsets& o) { return o.mean_absolute(); })
       .method("median", {}, [](const offsets& o) { return o.median(); })

@@ -7,6 +7,7 @@
 #include <aib/depth/errors.hpp>
 #include <aib/raster/downsample.hpp>
 
+#include "stats.hpp"
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -36,6 +37,16 @@ depth_map map_of_rows(const std::vector<std::vector<double>>& rows) {
   return map;
 }
 
+record summary_of(lua_State* state, const depth_map& d) {
+  stats::moments valid;
+  for (const float v : d.values) {
+    if (depth::is_valid(v)) valid.add(v);
+  }
+  record r(state);
+  r.set("width", d.values.width()).set("height", d.values.height()).set("n_valid", valid.count());
+  return set_moments(r, valid);
+}
+
 void bind_map(lua_State* state) {
   type<depth_map>(state, "depth_map", print_map, bytes_of_map)
       .field("width", [](const depth_map& d) { return d.values.width(); })
@@ -51,6 +62,7 @@ void bind_map(lua_State* state) {
             }
             return v(column - 1, row - 1);
           })
+      .method("summary", {}, [](lua_State* l, const depth_map& d) { return summary_of(l, d); })
       .method("scaled", {"factor"}, [](const depth_map& d, double factor) {
         depth_map scaled = d;
         for (float& v : scaled.values) v = static_cast<float>(v * factor);

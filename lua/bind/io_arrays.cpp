@@ -7,11 +7,13 @@
 #include <aib/io/trajectory.hpp>
 
 #include "kit.hpp"
+#include "stats.hpp"
 
 #ifdef AIB_WITH_NPZ
 #include <aib/io/npz.hpp>
 #endif
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -57,11 +59,14 @@ class nested_numbers {
   [[nodiscard]] io::array array() const { return io::make_array<double>(shape_, numbers_); }
 
  private:
+  static constexpr std::size_t most_axes = 32;  // NumPy's own limit
+
   [[noreturn]] static void refuse() {
     throw argument_error("aib.io.array: numbers, or lists of numbers of one size, expected");
   }
 
   void add(const sol::table& list, std::size_t axis) {
+    if (axis == most_axes) refuse();  // a list that contains itself has no end
     const std::size_t n = list.size();
     if (shape_.size() == axis && numbers_.empty()) shape_.push_back(n);
     if (shape_.size() <= axis || shape_[axis] != n) refuse();
@@ -118,12 +123,23 @@ io::array array_of(const sol::object& object) {
       "aib.io.array: array, distances, cloud, depth_map, trajectory or list of numbers expected");
 }
 
+record summary_of(lua_State* state, const io::array& a) {
+  stats::moments finite;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::isfinite(a[i])) finite.add(a[i]);
+  }
+  record r(state);
+  r.set("shape", a.shape).set("dtype", name(a.type)).set("n", a.size());
+  return set_moments(r.set("n_finite", finite.count()), finite);
+}
+
 void bind_array(lua_State* state) {
   type<io::array>(state, "array", print_array, bytes_of_array)
       .length([](const io::array& a) { return a.size(); })
       .element([](const io::array& a, std::size_t i) { return a[i]; })
       .field("shape", [](const io::array& a) { return a.shape; })
       .field("dtype", [](const io::array& a) { return name(a.type); })
+      .method("summary", {}, [](lua_State* l, const io::array& a) { return summary_of(l, a); })
       .method("at", {"index"}, [](const io::array& a, std::size_t index) {
         if (index == 0) throw argument_error("array:at: indices begin at 1");
         return a.at(index - 1);

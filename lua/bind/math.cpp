@@ -67,6 +67,13 @@ void bind_sim3(lua_State* state) {
       .field("angle_deg",
              [](const sim3& t) { return math::degrees(math::rotation_angle(t.rotation)); })
       .method("inverse", {}, [](const sim3& t) { return t.inverse(); })
+      .method("summary", {},
+              [](lua_State* l, const sim3& t) {
+                record r(l);
+                r.set("scale", t.scale).set("translation", t.translation);
+                r.set("angle_deg", math::degrees(math::rotation_angle(t.rotation)));
+                return r.set("shift", t.translation.norm());
+              })
       .method("matrix", {}, [](const sim3& t) { return t.matrix(); })
       .meta("__mul", {"thing"}, [](lua_State* l, const sim3& b_from_a, const sol::object& thing) {
         return product(l, b_from_a, thing);

@@ -51,6 +51,12 @@ void name_labels(std::vector<record>& list, const mesh::mesh& m) {
   }
 }
 
+record summary_of(lua_State* state, const mesh::mesh& m) {
+  record r = bind::as_record(state, bounds(m));
+  r.set("n_triangles", m.triangles.size()).set("n_vertices", m.vertices.size());
+  return r.set("n_open_edges", mesh::n_open_edges(m)).set("area", mesh::area(m));
+}
+
 }  // namespace
 
 void bind_mesh(lua_State* state) {
@@ -62,6 +68,7 @@ void bind_mesh(lua_State* state) {
       .method("bounds", {},
               [](lua_State* l, const mesh::mesh& m) { return as_record(l, bounds(m)); })
       .field("n_open_edges", [](const mesh::mesh& m) { return mesh::n_open_edges(m); })
+      .method("summary", {}, [](lua_State* l, const mesh::mesh& m) { return summary_of(l, m); })
       .method("area", {}, [](const mesh::mesh& m) { return mesh::area(m); })
       .method("transformed", {"transform"},
               [](const mesh::mesh& m, const math::sim3& b_from_a) { return b_from_a * m; });

@@ -18,6 +18,8 @@
 #include "camera.hpp"
 #include "kit.hpp"
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -190,18 +192,36 @@ record as_record(lua_State* state, const pose::registration& g) {
   return r.set("missing", g.missing);
 }
 
-/// Views with a camera on both sides.
-std::vector<pose::camera_pair> views_of(const camera_map& cameras, const camera_map& reference) {
-  std::vector<pose::camera_pair> views;
+/// Views with a camera on both sides, in the order of their names.
+struct named_views {
+  std::vector<std::string> names = {};
+  std::vector<pose::camera_pair> pairs = {};
+
+  void add(const std::string& name, const math::camera& estimate, const math::camera& reference) {
+    names.push_back(name);
+    pairs.push_back({estimate, reference});
+  }
+};
+
+record by_name(lua_State* state,
+               const std::vector<std::string>& names,
+               const std::vector<double>& values) {
+  record out(state);
+  for (std::size_t i = 0; i < names.size(); ++i) out.set(names[i].c_str(), values[i]);
+  return out;
+}
+
+named_views views_of(const camera_map& cameras, const camera_map& reference) {
+  named_views views;
   for (const auto& [name, camera] : cameras) {
     const auto at = reference.find(name);
-    if (at != reference.end()) views.push_back({camera, at->second});
+    if (at != reference.end()) views.add(name, camera, at->second);
   }
   return views;
 }
 
 /// The same; a number is the focal length of every reference camera.
-std::vector<pose::camera_pair> views_of(const camera_map& cameras, const sol::object& reference) {
+named_views views_of(const camera_map& cameras, const sol::object& reference) {
   if (const auto known = read_if<camera_map>(reference)) return views_of(cameras, *known);
   const auto focal = read_if<double>(reference);
   if (!focal) {
@@ -209,10 +229,31 @@ std::vector<pose::camera_pair> views_of(const camera_map& cameras, const sol::ob
         "aib.pose.focal_error: argument 2 (ref): table of cameras by image name, or a focal length "
         "in pixels, expected");
   }
-  std::vector<pose::camera_pair> views;
+  named_views views;
   for (const auto& [name, camera] : cameras)
-    views.push_back({camera, math::pinhole(camera.width, camera.height, *focal, *focal, 0, 0)});
+    views.add(name, camera, math::pinhole(camera.width, camera.height, *focal, *focal, 0, 0));
   return views;
+}
+
+double path_length(const trajectory& t) {
+  return t.empty() ? 0.0 : pose::path_lengths(t.world_from_camera).back();
+}
+
+/// Box of the centres, number of the registered poses, length of the path.
+record summary_of(lua_State* state, const trajectory& t) {
+  record r(state);
+  Eigen::Array3d low = Eigen::Array3d::Constant(HUGE_VAL), high = -low;
+  std::size_t n_registered = 0;
+  for (const math::rigid3& p : t.world_from_camera) {
+    if (!p.is_finite()) continue;
+    ++n_registered;
+    low = low.min(p.translation.array());
+    high = high.max(p.translation.array());
+  }
+  r.set("n", t.size()).set("n_registered", n_registered).set("path_length", path_length(t));
+  if (n_registered > 0) r.set("min", Eigen::Vector3d(low)).set("max", Eigen::Vector3d(high));
+  if (t.stamps_s.empty()) return r;
+  return r.set("first_stamp", t.stamps_s.front()).set("last_stamp", t.stamps_s.back());
 }
 
 void bind_trajectory(lua_State* state) {
@@ -223,10 +264,8 @@ void bind_trajectory(lua_State* state) {
       .field("stamps", [](const trajectory& t) { return t.stamps_s; })
       .field("warnings", [](const trajectory& t) { return t.warnings; })
       .method("positions", {}, [](const trajectory& t) { return positions(t); })
-      .method("path_length", {},
-              [](const trajectory& t) {
-                return t.empty() ? 0.0 : pose::path_lengths(t.world_from_camera).back();
-              })
+      .method("path_length", {}, [](const trajectory& t) { return path_length(t); })
+      .method("summary", {}, [](lua_State* l, const trajectory& t) { return summary_of(l, t); })
       .method("select", {"indices"},
               [](const trajectory& t, std::vector<std::size_t> indices) {
                 for (std::size_t& i : indices) {
@@ -415,14 +454,16 @@ void bind_intrinsics(module& m) {
                    o.choice("over", focal_over::views,
                             {{"views", focal_over::views}, {"cameras", focal_over::cameras}});
                o.done();
-               const auto r = pose::focal_error(views_of(cameras, ref), over);
+               const named_views views = views_of(cameras, ref);
+               const auto r = pose::focal_error(views.pairs, over);
                record out(l);
                out.set("mre", r.mre).set("n", r.n);
+               if (over == focal_over::views) out.set("each", by_name(l, views.names, r.each));
                return out;
              })
       .function("intrinsics_error", {"cameras", "ref"},
                 [](lua_State* l, const camera_map& cameras, const camera_map& ref) {
-                  const auto r = pose::intrinsics_error(views_of(cameras, ref));
+                  const auto r = pose::intrinsics_error(views_of(cameras, ref).pairs);
                   record out(l);
                   out.set("focal_mre", r.focal.mre).set("focal_spread", r.focal_spread);
                   out.set("principal_point_px", r.principal_point_px).set("n", r.focal.n);

@@ -5,6 +5,9 @@
 
 #include "kit.hpp"
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,12 +52,36 @@ label_image labels_of_rows(const std::vector<std::vector<std::uint16_t>>& rows) 
   return labels;
 }
 
+record summary_of(lua_State* state, const color_image& image) {
+  std::array<double, 3> mean = {};
+  for (const raster::rgb& pixel : image) {
+    for (std::size_t c = 0; c < 3; ++c) mean[c] += pixel[c];
+  }
+  record r(state);
+  r.set("width", image.width()).set("height", image.height());
+  if (image.size() == 0) return r;
+  for (double& sum : mean) sum /= static_cast<double>(image.size());
+  return r.set("mean", std::vector<double>(mean.begin(), mean.end()));
+}
+
+record summary_of(lua_State* state, const label_image& image) {
+  std::map<std::uint16_t, std::size_t> counts;
+  for (const std::uint16_t label : image) ++counts[label];
+  sol::table by_label(state, sol::create);
+  for (const auto& [label, n] : counts) by_label[label] = n;
+  return record(state)
+      .set("width", image.width())
+      .set("height", image.height())
+      .set("counts", by_label);
+}
+
 }  // namespace
 
 void bind_raster(lua_State* state) {
   type<color_image>(state, "image", print_image, bytes<raster::rgb>)
       .field("width", [](const color_image& i) { return i.width(); })
       .field("height", [](const color_image& i) { return i.height(); })
+      .method("summary", {}, [](lua_State* l, const color_image& i) { return summary_of(l, i); })
       .method("at", {"column", "row"},
               [](const color_image& i, std::size_t column, std::size_t row) {
                 const raster::rgb& c = at(i, column, row);
@@ -63,6 +90,7 @@ void bind_raster(lua_State* state) {
   type<label_image>(state, "label_image", print_labels, bytes<std::uint16_t>)
       .field("width", [](const label_image& l) { return l.width(); })
       .field("height", [](const label_image& l) { return l.height(); })
+      .method("summary", {}, [](lua_State* l, const label_image& i) { return summary_of(l, i); })
       .method("at", {"column", "row"},
               [](const label_image& l, std::size_t column, std::size_t row) {
                 return at(l, column, row);

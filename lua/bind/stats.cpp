@@ -32,6 +32,11 @@ void bind_moments(lua_State* state) {
       .field("std", [](const stats::moments& m) { return m.deviation(); })
       .field("min", [](const stats::moments& m) { return m.min(); })
       .field("max", [](const stats::moments& m) { return m.max(); })
+      .method("summary", {},
+              [](lua_State* l, const stats::moments& m) {
+                record r(l);
+                return set_moments(r.set("count", m.count()), m);
+              })
       .method("add", {"value"},
               [](stats::moments& m, double value) {
                 m.add(value);

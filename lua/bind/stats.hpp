@@ -3,11 +3,18 @@
 #pragma once
 
 #include <aib/stats/bootstrap.hpp>
+#include <aib/stats/moments.hpp>
 
 #include "kit.hpp"
 #include <vector>
 
 namespace aib::bind {
+
+/// Adds mean, std, min and max; nothing where there is no value.
+inline record& set_moments(record& r, const stats::moments& m) {
+  if (m.count() == 0) return r;
+  return r.set("mean", m.mean()).set("std", m.deviation()).set("min", m.min()).set("max", m.max());
+}
 
 /// The bootstrap interval of a mean: reads the options, which end with it.
 inline record bootstrap_record(lua_State* state, const std::vector<double>& values, options& o) {

@@ -17,6 +17,10 @@ local point_cloud = {}
 ---@return aib.Box box
 function point_cloud:bounds() end
 
+---What it is in a few numbers; the box is that of the finite points.
+---@return { n: integer, n_finite: integer, min: number[]|nil, max: number[]|nil, has_normals: boolean, has_colors: boolean, has_labels: boolean } summary
+function point_cloud:summary() end
+
 ---Label of a point.
 ---@param index integer
 ---@return integer label
@@ -60,6 +64,10 @@ function point_cloud:transformed(transform) end
 ---@field n_dropped integer  # points that are not finite
 ---@field n_beyond integer  # not below max_distance
 local distances = {}
+
+---What it is in a few numbers, nil where no distance counts.
+---@return { n: integer, n_dropped: integer, n_beyond: integer, mean: number|nil, median: number|nil, rmse: number|nil, max: number|nil } summary
+function distances:summary() end
 
 ---Mean of the distances that count.
 ---@return number mean
@@ -225,6 +233,10 @@ function cloud.compare_by_label(est, ref, options) end
 ---@class aib.Offsets
 ---@field n_dropped integer  # values that are not finite
 local offsets = {}
+
+---What it is in a few numbers, nil where there is none.
+---@return { n: integer, n_dropped: integer, mean: number|nil, mean_absolute: number|nil, median: number|nil, deviation: number|nil } summary
+function offsets:summary() end
 
 ---Mean of the offsets: how far all has moved.
 ---@return number mean

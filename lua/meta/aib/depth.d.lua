@@ -17,6 +17,10 @@ local depth_map = {}
 ---@return number depth
 function depth_map:at(column, row) end
 
+---What it is in a few numbers, of the valid depths.
+---@return { width: integer, height: integer, n_valid: integer, mean: number|nil, std: number|nil, min: number|nil, max: number|nil } summary
+function depth_map:summary() end
+
 ---The depth map with every depth times a factor.
 ---@param factor number
 ---@return aib.DepthMap scaled

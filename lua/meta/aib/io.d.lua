@@ -24,6 +24,10 @@ local io = {}
 ---@field dtype string  # NumPy's name: "f4", "u1", "b1", ...
 local array = {}
 
+---What it is in a few numbers, of the finite ones.
+---@return { shape: integer[], dtype: string, n: integer, n_finite: integer, mean: number|nil, std: number|nil, min: number|nil, max: number|nil } summary
+function array:summary() end
+
 ---The sub-array at an index (from 1) of the first axis.
 ---@param index integer
 ---@return aib.Array

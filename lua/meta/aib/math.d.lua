@@ -13,6 +13,10 @@ local math = {}
 ---@field angle_deg number  # of the rotation
 local sim3 = {}
 
+---What it is in a few numbers: the turn, and how far the origin moves.
+---@return { scale: number, angle_deg: number, translation: number[], shift: number } summary
+function sim3:summary() end
+
 ---The transform that undoes it.
 ---@return aib.Sim3 inverse
 function sim3:inverse() end

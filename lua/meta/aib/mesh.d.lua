@@ -17,6 +17,10 @@ local triangle_mesh = {}
 ---@return aib.Box box
 function triangle_mesh:bounds() end
 
+---What it is in a few numbers.
+---@return { n_triangles: integer, n_vertices: integer, n_open_edges: integer, area: number, min: number[]|nil, max: number[]|nil } summary
+function triangle_mesh:summary() end
+
 ---Area of all triangles, square units.
 ---@return number area
 function triangle_mesh:area() end

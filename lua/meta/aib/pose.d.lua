@@ -20,6 +20,10 @@ function trajectory:positions() end
 ---@return number length
 function trajectory:path_length() end
 
+---What it is in a few numbers; the box is that of the registered centres.
+---@return { n: integer, n_registered: integer, path_length: number, min: number[]|nil, max: number[]|nil, first_stamp: number|nil, last_stamp: number|nil } summary
+function trajectory:summary() end
+
 ---Some of the poses.
 ---@param indices integer[]
 ---@return aib.Trajectory selected
@@ -198,11 +202,12 @@ function pose.kitti_odometry(est, ref, options) end
 ---@return aib.SubTrajectoryErrors[] errors
 function pose.sub_trajectories(est, ref, options) end
 
----Mean relative error of focal lengths, rescaled to the reference's image size.
+---Mean relative error of focal lengths, rescaled to the reference's image size. `each`: of every image,
+---by name, where the mean is over views.
 ---@param cameras table<string, aib.Camera>
 ---@param ref table<string, aib.Camera>|number  # a number: the focal length of all, in pixels
 ---@param options? { over?: "views"|"cameras" }
----@return { mre: number, n: integer } error
+---@return { mre: number, n: integer, each?: table<string, number> } error
 function pose.focal_error(cameras, ref, options) end
 
 ---Focal length, principal point, spread and reprojection of cameras against those of the reference.

@@ -10,6 +10,10 @@ local raster = {}
 ---@field height integer
 local image = {}
 
+---What it is in a few numbers: size and mean colour.
+---@return { width: integer, height: integer, mean: number[]|nil } summary
+function image:summary() end
+
 ---Red, green and blue of a pixel.
 ---@param column integer
 ---@param row integer
@@ -21,6 +25,10 @@ function image:at(column, row) end
 ---@field width integer
 ---@field height integer
 local label_image = {}
+
+---What it is in a few numbers: size and pixels by label.
+---@return { width: integer, height: integer, counts: table<integer, integer> } summary
+function label_image:summary() end
 
 ---The label of a pixel.
 ---@param column integer

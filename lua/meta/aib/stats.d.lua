@@ -23,6 +23,10 @@ local stats = {}
 ---@field max number  # -inf of nothing
 local moments = {}
 
+---What it is in a few numbers.
+---@return { count: integer, mean: number|nil, std: number|nil, min: number|nil, max: number|nil } summary
+function moments:summary() end
+
 ---Adds a value.
 ---@param value number
 ---@return aib.Moments self
