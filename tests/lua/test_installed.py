@@ -59,6 +59,24 @@ class Installed(unittest.TestCase):
         self.assertIn("asset_inspection", self.complete("asset_"))
         self.assertEqual(self.complete("kitti_od"), ["kitti_odometry"])
 
+    def test_the_archive_runs_anywhere_from_its_own_libraries_alone(self):
+        archive = pathlib.Path(__file__).parents[2] / "lua" / "archive.sh"
+        with tempfile.TemporaryDirectory() as away:
+            packed = [pathlib.Path(away, name) for name in ("a.tar.gz", "b.tar.gz")]
+            for file in packed:
+                output_of(archive, file, BUILD)
+            self.assertEqual(packed[0].read_bytes(), packed[1].read_bytes())
+            output_of("tar", "-C", away, "-xf", packed[0])
+            (program,) = pathlib.Path(away).glob("aib-*/bin/aib-lua")
+            link = pathlib.Path(away, "a link")
+            link.symlink_to(program)
+            script = "for line in io.lines '/proc/self/maps' do print((line:match '%s(/.*)$')) end"
+            mapped = set(output_of("env", "-i", "/bin/sh", "-c", f"'{link}' -e \"{script}\"").split("\n"))
+            libraries = {path for path in mapped if ".so" in path}
+            self.assertGreater(len(libraries), 5)
+            self.assertEqual({path for path in libraries if not path.startswith(away)}, set())
+            self.assertIn("asset_inspection", output_of(link, "--list"))
+
     def test_options_are_completed(self):
         self.assertEqual(self.complete("--thr"), ["--threads"])
         self.assertEqual(self.complete("trajectory", "--rel"), ["--relation"])
