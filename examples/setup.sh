@@ -42,6 +42,8 @@ ci_needs='
 git                  program git
 clang                program clang++
 clang-format         program clang-format
+libclang-rt-14-dev   file /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-x86_64.a
+locales              file /usr/share/i18n/locales/de_DE
 lua-check            program luacheck
 cmake                program cmake
 colmap               program colmap
@@ -49,6 +51,9 @@ valgrind             program valgrind
 doxygen              program doxygen
 snakemake            program snakemake
 python3-matplotlib   python matplotlib
+nodejs               program node
+npm                  program npm
+chromium             program chromium
 '
 
 is_here() {  # is_here KIND NAME [VERSION]
@@ -56,6 +61,7 @@ is_here() {  # is_here KIND NAME [VERSION]
     program) command -v "$2" ;;
     module) pkg-config --exists "$2${3:+ >= $3}" || [ -d "subprojects/$2" ] ;;
     python) /usr/bin/python3 -c "import $2" ;;
+    file) compgen -G "$2" ;;
     header) echo "#include <$2>" | "${CXX:-c++}" -x c++ -E - ;;
   esac >/dev/null 2>&1
 }

@@ -9,8 +9,10 @@
 ---   group    what the groups have in common, as a table
 ---   x, y     { label =, unit =, scale = "linear" | "log" }
 ---   frames   of a timeline: the names along x
----   lines    of curves and timelines: { label =, group =, x = numbers, y = numbers }; NaN is a gap
+---   lines    of curves and timelines: { label =, group =, x = numbers, y = numbers, place = number }; NaN is a gap;
+---            the place tells its colour: a method has the same one in every figure
 ---   rows     of intervals: { label =, value =, low =, high = }
+local definitions = require "aib.report.definitions"
 local report_module = require "aib.report"
 local suggest = require "aib.suggest"
 
@@ -100,6 +102,13 @@ end
 local bounds <const> = { { "_low", "_high" }, { ", low", ", high" } }
 local centres <const> = { ["_low"] = "", [", low"] = ", difference" }
 
+local function interval_text(name)
+  local definition = definitions.of(name)
+  local is_change = name:find("_change$") or name:find("_slope$") or name:find(", difference$")
+  return (definition and definition .. " " or "") .. "The bar is the interval of 95 %"
+    .. (is_change and "; where it leaves out 0, the change is more than chance." or ".")
+end
+
 --- Records that have bounds, as intervals.
 local function add_records(figure_of, records)
   local by_place = {}
@@ -111,8 +120,30 @@ local function add_records(figure_of, records)
       local centre = name and by_place[name .. centres[suffix[1]] .. "\0" .. low.group_id]
       if high and centre and centre.value and low.value and high.value then
         add_interval(figure_of, { title = centre.name, unit = centre.unit, group = low.group, value = centre.value,
-          low = low.value, high = high.value, text = "Bars are intervals of 95 %; beside 0 lies what is no chance." })
+          low = low.value, high = high.value, text = interval_text(centre.name) })
       end
+    end
+  end
+end
+
+--- Numbers what tells lines apart: in the order of the records, then of the lines.
+local function place_lines(figures, records)
+  local names, places, n = {}, {}, 0
+  for _, figure in ipairs(figures) do
+    for _, line in ipairs(figure.lines or {}) do
+      local name = own_name(line.group)
+      names[line] = name ~= "" and name or line.label
+      places[names[line]] = 0
+    end
+  end
+  local function give_place(name)
+    if places[name] == 0 then n, places[name] = n + 1, n + 1 end
+  end
+  for _, record in ipairs(records) do give_place(own_name(record.group)) end
+  for _, figure in ipairs(figures) do
+    for _, line in ipairs(figure.lines or {}) do
+      give_place(names[line])
+      line.place = places[names[line]]
     end
   end
 end
@@ -129,6 +160,7 @@ function M.of(report)
   for _, figure in ipairs(list) do
     if figure.parts then finish_timeline(figure) end
   end
+  place_lines(list, report:records())
   return list
 end
 

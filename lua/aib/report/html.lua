@@ -33,7 +33,7 @@ local function all(list, make)
   return table.concat(out, "\n")
 end
 
---- The figures of each scene and condition together, in the order of their first ones; intervals, which have none, last.
+--- The figures of each scene and condition together, in the order of their first ones.
 local function by_place(figures)
   local places, index = {}, {}
   for _, figure in ipairs(figures) do
@@ -48,7 +48,8 @@ local function by_place(figures)
 end
 
 local function figures_of_place(place)
-  local title = place.title ~= "" and text("h3", {}, place.title) or ""
+  local title = place.title ~= "" and place.title or place.figures[1].kind == "interval" and "Intervals"
+  title = title and text("h3", {}, title) or ""
   local group = place.group and next(place.group) and json.encode(place.group)
   return element("div", { class = "place", ["data-group"] = group }, title
     .. element("div", { class = "figures" }, all(place.figures, figure_page.figure)))
@@ -111,7 +112,8 @@ return function(report)
   local sections = sections_of(report, figures, script)
   local about = report.cite and text("p", { class = "cite" }, report.cite) or ""
   local body = {
-    element("header", {}, element("div", { id = "bar" }, navigation(sections)) .. text("h1", {}, report.title) .. about),
+    element("header", {}, element("div", { id = "bar" }, navigation(sections)) .. text("h1", {}, report.title)
+      .. about),
     script == "" and text("p", { class = "warning" }, without_script) or "",
     element("main", {}, all(sections, function(s) return s.html end)),
     footer(licences), data.elements(report, figures),

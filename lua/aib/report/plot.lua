@@ -5,6 +5,7 @@
 ---
 ---   aib.report.plot.write("path.svg", aib.report.plot.trajectory(est, ref, { view = "above" }))
 local aib = require "aib"
+local axes = require "aib.report.axes"
 local suggest = require "aib.suggest"
 local svg = require "aib.report.svg"
 
@@ -73,18 +74,21 @@ local function ramp(high)
   return colors_of(values, high)
 end
 
---- The estimate's path in the colours of its absolute errors; both trajectories are paired.
+--- The estimate's path in the colours of its absolute errors, the last colour where 5 % are beyond (`max` says
+--- otherwise); both trajectories are paired.
 function M.ape(est, ref, options)
   options = check("ape", options, { "view", "relation", "max" })
   local errors = aib.pose.ape(est, ref, { relation = options.relation }).errors
-  local high = options.max or math.max(1e-12, table.unpack(errors))
+  local high = math.max(1e-12, options.max or aib.stats.quantile(errors, 0.95))
   local view = view_of(options.view)
   local path, truth = path_of(est, view), path_of(ref, view)
   path.colors = colors_of(errors, high)
   truth.label, truth.color, truth.dash, truth.width = "reference", "#666666", "5 4", 1.5
   options.title = options.title or "Absolute pose error along the path"
   local unit = options.relation and options.relation:find("angle") and options.relation:match("_(%a+)$") or "m"
-  return map(options, view, { truth, path }, { label = ("APE (%s)"):format(unit), high = high, colors = ramp(high) })
+  local _, largest = axes.range_of { errors }
+  local label = ("APE (%s), largest %.3g"):format(unit, largest)
+  return map(options, view, { truth, path }, { label = label, high = high, colors = ramp(high) })
 end
 
 --- Recall of relative poses against the angle, from results of aib.pose.auc by name: rotations solid, directions

@@ -7,7 +7,8 @@
 ---
 ---   chart = { title =, width =, height =, x = axis, y = axis, lines = { line, ... }, equal = true|nil, bar = bar|nil }
 ---   axis  = { label =, unit =, scale = "linear" | "log", low =, high = }      bounds where the data is not to give them
----   line  = { label =, x = numbers, y = numbers, color =, dash =, width =, colors = one a piece }
+---   line  = { label =, x = numbers, y = numbers, color =, dash =, width =, place = number of its colour,
+---             colors = one a piece }
 ---   bar   = { label =, high =, colors = list }                                the colours of values from 0 to high
 local axes = require "aib.report.axes"
 local markup = require "aib.report.markup"
@@ -59,20 +60,21 @@ end
 
 --- Names of the lines above the plot, as many rows as they take. Returns the height.
 function plot:legend(lines, width)
-  local x, y, row = 0, font, font + 6
+  local left = self.box.left
+  local x, y, row = left, font, font + 6
   for i, line in ipairs(lines) do
     local words = shortened(line.label or "", 60)
     local needed = 30 + width_of(words) + 14
     if words ~= "" then
-      if x > 0 and x + needed > width then x, y = 0, y + row end
-      local color, dash = M.manner(i)
+      if x > left and x + needed > width then x, y = left, y + row end
+      local color, dash = M.manner(line.place or i)
       self:add(stroke(("M%s %sh22"):format(number(x), number(y - 4)), { stroke = line.color or color,
         ["stroke-width"] = 2.5, ["stroke-dasharray"] = line.dash or dash }))
       self:add(text_at(x + 28, y, words, {}))
       x = x + needed
     end
   end
-  return x > 0 and y + 8 or 0
+  return x > left and y + 8 or 0
 end
 
 function plot:frame(chart)
@@ -120,7 +122,7 @@ function plot:path(line, steps)
 end
 
 function plot:line(line, i, steps)
-  local color, dash = M.manner(i)
+  local color, dash = M.manner(line.place or i)
   if line.colors then return self:coloured(line) end
   self:add(stroke(self:path(line, steps), { stroke = line.color or color, ["stroke-width"] = line.width or 2,
     ["stroke-dasharray"] = line.dash or dash, ["stroke-linejoin"] = "round", ["stroke-linecap"] = "round" }))
@@ -176,9 +178,9 @@ local function columns(lines, key)
   return lists
 end
 
---- The same length of a unit on both axes.
+--- The same length of a unit on both axes, with some room around.
 local function make_equal(box, x, y)
-  local per_unit = math.min(box.width / (x[2] - x[1]), box.height / (y[2] - y[1]))
+  local per_unit = 0.94 * math.min(box.width / (x[2] - x[1]), box.height / (y[2] - y[1]))
   local function widened(range, pixels)
     local missing = pixels / per_unit - (range[2] - range[1])
     return { range[1] - missing / 2, range[2] + missing / 2 }

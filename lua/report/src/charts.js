@@ -13,12 +13,13 @@ const dashes = [undefined, [7, 3], [2, 3], [9, 3, 2, 3]];
 const charts = [];
 
 const axisLabel = ({ label, unit }) => (label ?? "") + (unit ? ` (${unit})` : "");
-const dashOf = (i) => dashes[Math.floor(i / palette.length) % dashes.length];
+const colorOf = (place) => palette[place % palette.length];
+const dashOf = (place) => dashes[Math.floor(place / palette.length) % dashes.length];
 
 function axis(scale, spec, extra = {}) {
   const ink = themed("--ink-soft");
   const grid = themed("--line");
-  return { scale, label: axisLabel(spec), stroke: ink, labelSize: 22, labelFont: "12px system-ui", font: "11px system-ui",
+  return { scale, label: axisLabel(spec), stroke: ink, labelSize: 20, labelGap: 0, labelFont: "12px system-ui", font: "11px system-ui",
     grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, ...extra };
 }
 
@@ -52,7 +53,7 @@ function openOnClick(plot, figure) {
   });
 }
 
-const heightOf = (figure) => (figure.frames ? 200 : 240);
+const heightOf = (figure) => (figure.frames ? 230 : 250);
 
 function options(figure, width) {
   const isTimeline = Boolean(figure.frames);
@@ -60,13 +61,14 @@ function options(figure, width) {
   return {
     width, height: heightOf(figure),
     scales: { x: scaleOf(figure.x), y: scaleOf(figure.y) },
-    axes: [axis("x", figure.x, isTimeline ? { values: names, space: 110 } : {}), axis("y", figure.y, { size: 58 })],
+    axes: [axis("x", figure.x, { size: 28, ...(isTimeline ? { values: names, space: 110 } : {}) }),
+      axis("y", figure.y, { size: 54 })],
     cursor: { points: { size: 7 }, drag: { x: true, y: false } },
     series: [
-      { label: axisLabel(figure.x), value: (_, x) => (isTimeline ? figure.frames[x - 1] ?? "–" : short(x)) },
-      ...figure.lines.map((line, i) => ({
-        label: line.label || figure.y.label, stroke: palette[i % palette.length], width: 2, dash: dashOf(i),
-        spanGaps: !isTimeline, points: { show: isTimeline, size: 5 }, value: (_, y) => short(y),
+      { label: axisLabel(figure.x), value: (_, x) => (x == null ? "" : isTimeline ? figure.frames[x - 1] : short(x)) },
+      ...figure.lines.map((line) => ({
+        label: line.label || figure.y.label, stroke: colorOf(line.place), width: 2, dash: dashOf(line.place),
+        spanGaps: !isTimeline, points: { show: isTimeline, size: 5 }, value: (_, y) => (y == null ? "" : short(y)),
         paths: figure.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
       })),
     ],

@@ -49,7 +49,8 @@ local function figure_data(figure)
   if not figure.lines then return copy end
   copy.lines = json.list()
   for i, line in ipairs(figure.lines) do
-    copy.lines[i] = { label = line.label, group = line.group, x = for_chart(line.x), y = for_chart(line.y) }
+    copy.lines[i] = { label = line.label, group = line.group, place = line.place - 1, x = for_chart(line.x),
+      y = for_chart(line.y) }
   end
   return copy
 end
@@ -58,8 +59,9 @@ local drawn <const> = { frame = true, cloud = true, mesh = true, cameras = true 
 
 --- The script elements of a report with its figures.
 function M.elements(report, figures)
-  local blobs, document = { place = {} }, { records = records.encode(report), figures = json.list(), views = json.list() }
-  document.keys, document.definitions = json.list(report:group_keys()), {}
+  local blobs = { place = {} }
+  local document = { records = records.encode(report), figures = json.list(), views = json.list(), definitions = {},
+    keys = json.list(report:group_keys()) }
   for _, record in ipairs(report:records()) do
     document.definitions[record.name] = definitions.of(record.name)
   end

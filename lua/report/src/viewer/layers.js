@@ -6,7 +6,7 @@
 /// A layer is { title, object (of three.js), isOn, colorings = [{ label, unit, values, isNone }], count, pick(...) }.
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Points, Vector3 } from "three";
 import { none16, numbers, report, valueOf } from "../data.js";
-import { short } from "../dom.js";
+import { rough, short } from "../dom.js";
 import { isPartOf, nameOf } from "../filter.js";
 import { faceMaterial, pointMaterial } from "./materials.js";
 
@@ -62,7 +62,7 @@ async function cloudLayer(view, centre) {
     colorings.push({ ...values, label: view.label ?? "value", unit: view.unit,
       attribute: new BufferAttribute(values.steps, 1, false) });
   }
-  const thinned = view.voxel > 0 ? `, one a voxel of ${short(view.voxel)}, of ${count(view.n_given)}` : "";
+  const thinned = view.voxel > 0 ? `, one a voxel of ${rough(view.voxel)}, of ${count(view.n_given)}` : "";
   const layer = { title: look.title, object, colorings, isOn: look.isOn, count: `${count(view.n)} points${thinned}`,
     picks: "points", tell: (i) => `${look.title}: ${layer.coloring ? told(layer.coloring, i) : "a point"}` };
   layer.colorBy = (coloring) => colorBy(layer, coloring);
