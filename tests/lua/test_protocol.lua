@@ -150,7 +150,8 @@ results:
   --csv FILE              the records, a line each
   --markdown FILE         the tables as Markdown
   --latex FILE            the tables as LaTeX (booktabs)
-  --html FILE             the tables as a page
+  --html FILE             a page that opens from disk: tables, charts, frames,
+                          3-D
   --quiet                 print nothing but errors
   --threads N             threads of the library (0, the default: all)
 

@@ -27,19 +27,6 @@ local function labelled(report)
   report:source(nasty, { bytes = 1, sha256 = "ab" })
 end
 
---- The page without its script and style, which hold code of their own.
-local function markup_of(page)
-  local script = require("aib.shell").text("report/page.js")
-  local at = script ~= "" and page:find(script, 1, true)
-  return at and page:sub(1, at - 1) .. page:sub(at + #script) or page
-end
-
---- The page's document.
-local function document_of(page)
-  local text = page:match('<script id="report" type="application/json">(.-)</script>')
-  return aib.json.decode(text, "page")
-end
-
 local function count(text, part)
   local n, at = 0, 1
   while true do
@@ -49,15 +36,34 @@ local function count(text, part)
   end
 end
 
+--- The page without its script and style, which hold code of their own.
+local function markup_of(page)
+  local script = require("aib.shell").text("report/page.js")
+  local at = script ~= "" and page:find(script, 1, true)
+  return at and page:sub(1, at - 1) .. page:sub(at + #script) or page
+end
+
+--- What the page's script reads, whether there is a script or not.
+local function data_of(report)
+  return require("aib.report.page.data").elements(report, require("aib.report.figures").of(report))
+end
+
+--- The document in it.
+local function document_of(elements)
+  local text = elements:match('<script id="report" type="application/json">(.-)</script>')
+  return aib.json.decode(text, "page")
+end
+
 return aib.test {
   ["labels with markup, quotes and 200 letters stay labels"] = function(t)
     local page = html(report_of(labelled, true))
     t:check(not markup_of(page):find("<img", 1, true))
     t:check(not page:find("<script>alert", 1, true))
-    t:check(not document_of(page) ~= nil)
     t:contains(page, ("x"):rep(200))
-    t:equal(document_of(page).records[1].group.scene, nasty)
-    t:check(not page:match('<script id="report".-</script>'):find("\u{2028}", 1, true))
+    local data = data_of(report_of(labelled, true))
+    t:equal(document_of(data).records[1].group.scene, nasty)
+    t:check(not data:find("\u{2028}", 1, true))
+    t:equal(count(data, "</script>"), 1)
   end,
 
   ["a page asks no network and says so to the browser"] = function(t)
@@ -116,7 +122,7 @@ return aib.test {
     t:equal(figure.frames, { "a", "b", "c" })
     t:check(figure.lines[1].y[1] ~= figure.lines[1].y[1])
     t:equal(figure.lines[1].y[2], 1)
-    t:equal(document_of(html(report)).figures[1].lines[1].y[1], aib.json.null)
+    t:equal(document_of(data_of(report)).figures[1].lines[1].y[1], aib.json.null)
   end,
 
   ["records with bounds are intervals"] = function(t)
@@ -145,7 +151,7 @@ return aib.test {
 
   ["geometry and frames are packed, the same data once"] = function(t)
     local cloud = aib.cloud.from_points { { 0, 0, 0 }, { 1, 2, 3 }, { 1, 1, 1 } }
-    local page = html(report_of(function(report)
+    local page = data_of(report_of(function(report)
       for _, method in ipairs { "A", "B" } do
         report:within({ method = method }):cloud { role = "estimate", cloud = cloud, values = { 0, 1, 0 / 0 } }
       end

@@ -75,6 +75,8 @@ return aib.test {
     local figure = plot.lines({ { label = "a", x = { 1, 2, 3, 4 }, y = { 1, 0 / 0, 3, 2 } } }, { x = {}, y = {} })
     check_markup(t, figure)
     t:check(not figure:find("nan", 1, true))
+    t:equal(select(2, figure:match('d="(M[^"]*)" fill="none" stroke="#0072B2" stroke%-linecap'):gsub("M", "")), 2)
+    t:contains(plot.lines({ { label = "a", x = { 1, 2 }, y = { 1, 0 / 0 } } }, {}), "h0.01")
     check_markup(t, plot.lines({ { label = "", x = {}, y = {} } }, {}))
   end,
 

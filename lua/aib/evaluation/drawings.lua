@@ -11,6 +11,12 @@ local function is_drawn(cell) return cell:draws() and not cell.group.model end
 
 local share_axis <const> = { label = "share of pairs", low = 0, high = 1 }
 
+local recall_texts <const> = {
+  rotation = "Frame pairs whose relative rotation is off by less.",
+  direction = "Frame pairs whose direction of translation is off by less.",
+  both = "Frame pairs of which neither is off by more.",
+}
+
 --- Recall of relative rotations, directions and both against the angle.
 function M.pose_recall(cell, auc, est, ref)
   if not is_drawn(cell) then return end
@@ -29,9 +35,9 @@ function M.pose_recall(cell, auc, est, ref)
     recall.both[tau + 1] = below / counts.n_pairs
   end
   for _, part in ipairs { "rotation", "direction", "both" } do
-    cell:curve { title = ("Relative poses, recall of %s"):format(part == "both" and "rotation and direction" or part),
+    cell:curve { title = ("Relative poses, recall of %s"):format(part),
       x = { label = "threshold", unit = "deg", low = 0, high = auc.max_deg }, y = share_axis, at = angles,
-      values = recall[part], text = "Share of frame pairs that are off by less than the threshold." }
+      values = recall[part], text = recall_texts[part] }
   end
 end
 

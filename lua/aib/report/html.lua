@@ -116,8 +116,8 @@ return function(report)
       .. about),
     script == "" and text("p", { class = "warning" }, without_script) or "",
     element("main", {}, all(sections, function(s) return s.html end)),
-    footer(licences), data.elements(report, figures),
-    script ~= "" and "<script>\n" .. script .. "</script>" or "",
+    footer(licences),
+    script ~= "" and data.elements(report, figures) .. "\n<script>\n" .. script .. "</script>" or "",
   }
   return '<!DOCTYPE html>\n<html lang="en">\n' .. head(report.title, shell.text("report/page.css")) .. "\n<body>\n"
     .. table.concat(body, "\n") .. "\n</body>\n</html>\n"

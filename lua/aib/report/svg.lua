@@ -5,7 +5,8 @@
 --- around them (currentColor), so that it reads on light and on dark; the lines have colours that red-green blindness
 --- tells apart, and dashes for print.
 ---
----   chart = { title =, width =, height =, x = axis, y = axis, lines = { line, ... }, equal = true|nil, bar = bar|nil }
+---   chart = { title =, width =, height =, x = axis, y = axis, lines = { line, ... }, equal = true|nil, bar = bar|nil,
+---             frames = names of x = 1, 2, ... }
 ---   axis  = { label =, unit =, scale = "linear" | "log", low =, high = }      bounds where the data is not to give them
 ---   line  = { label =, x = numbers, y = numbers, color =, dash =, width =, place = number of its colour,
 ---             colors = one a piece }
@@ -38,7 +39,7 @@ local function stroke(path, attributes)
 end
 
 local font <const> = 12
-local function width_of(words) return 0.58 * font * (utf8.len(words) or #words) end
+local function width_of(words) return 0.63 * font * (utf8.len(words) or #words) end
 
 local plot = {}
 plot.__index = plot
@@ -103,7 +104,7 @@ end
 
 --- Pieces of a line between its gaps.
 function plot:path(line, steps)
-  local parts, pen, last = {}, false, nil
+  local parts, pen = {}, false
   for i, x in ipairs(line.x) do
     local px, py = self:pixel(x, line.y[i])
     if not px then
@@ -116,9 +117,8 @@ function plot:path(line, steps)
     else
       parts[#parts + 1] = ("L%s %s"):format(number(px), number(py))
     end
-    last = px
   end
-  return last and table.concat(parts) or ""
+  return table.concat(parts)
 end
 
 function plot:line(line, i, steps)
@@ -216,6 +216,9 @@ function M.lines(chart, standalone)
   end
   self.x = axes.axis(x_low, x_high, { scale = chart.x.scale, ticks = 6, exact = true })
   self.y = axes.axis(y_low, y_high, { scale = chart.y.scale, exact = chart.equal or chart.y.high ~= nil })
+  if chart.frames then
+    self.x.text = function(tick) return ((chart.frames[math.tointeger(tick)] or ""):gsub("%.[^.]*$", "")) end
+  end
   self:frame(chart)
   for i, line in ipairs(chart.lines) do self:line(line, i, chart.steps) end
   return document(chart, width, height, table.concat(self.out), standalone)

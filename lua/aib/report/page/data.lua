@@ -57,7 +57,7 @@ end
 
 local drawn <const> = { frame = true, cloud = true, mesh = true, cameras = true }
 
---- The script elements of a report with its figures.
+--- The script elements of a report with its figures, for a page that has a script to read them.
 function M.elements(report, figures)
   local blobs = { place = {} }
   local document = { records = records.encode(report), figures = json.list(), views = json.list(), definitions = {},

@@ -46,9 +46,12 @@ local function numbers_of(figure)
   return heads, rows, stride
 end
 
+--- As wide as its place in a large window, so that letters have the size of the page's.
+local sizes <const> = { timeline = { 1180, 250 }, curve = { 400, 260 }, interval = { 640 } }
+
 local function drawing(figure)
-  if figure.kind == "interval" then return svg.intervals(figure) end
-  return svg.lines(figure)
+  local chart = setmetatable({ width = sizes[figure.kind][1], height = sizes[figure.kind][2] }, { __index = figure })
+  return figure.kind == "interval" and svg.intervals(chart) or svg.lines(chart)
 end
 
 function M.figure(figure)
