@@ -74,7 +74,7 @@ def add_sky(sun_elevation_deg=38.0, sun_azimuth_deg=232.0):
     clouds = n.step(n.noise(1.15, 6.0, 0.58, at=layer.outputs[0]), 0.47, 0.70)
     clouds = n.math("MULTIPLY", clouds, n.step(height, 0.03, 0.2))  # haze at the horizon
     up = n.math("MULTIPLY_ADD", split.outputs[2], 0.5, 0.5)
-    blue = n.ramp(up, (0.47, (0.16, 0.18, 0.15)), (0.497, (0.36, 0.40, 0.40)), (0.503, (0.62, 0.72, 0.80)),
+    blue = n.ramp(up, (0.45, (0.26, 0.29, 0.26)), (0.497, (0.48, 0.54, 0.57)), (0.503, (0.62, 0.72, 0.80)),
                   (0.56, (0.36, 0.54, 0.78)), (0.85, (0.09, 0.23, 0.56)))
     white = n.ramp(n.noise(2.3, 4.0, 0.6, at=layer.outputs[0]), (0.3, (0.52, 0.55, 0.60)), (0.62, (0.98, 0.98, 0.97)))
     cloudy = n.shader("Background", Color=n.mix(clouds, blue, white), Strength=1.15)
