@@ -44,24 +44,24 @@ fi
 seconds=$(python3 -c "print(max(1, int(60 * $minutes / ${#readers[@]})))")
 echo "fuzz: ${#readers[@]} targets, $seconds s each"
 
-# Files with the extension that a reader is given.
+# files_of READER FOLDER ...: files with the extension that the reader is given, or in a folder of that name.
 files_of() {
-  local extension=.${1#*.}
+  local extension=${1#*.}
   case $1 in
-    colmap.text) extension=.txt ;;
-    colmap.*) extension=.bin ;;
-    poses.opensfm) extension=.json ;;
+    colmap.text) extension=txt ;;
+    colmap.*) extension=bin ;;
+    poses.opensfm) extension=json ;;
   esac
-  find examples/data ../shared/golden/zoo -name "*$extension" "${@:2}" 2>/dev/null | sort
+  find "${@:2}" -type f '(' -iname "*.$extension" -o -ipath "*/$extension/*" ')' 2>/dev/null | sort
 }
 
 seeds_of() {
-  files_of "$1" -size -64k | awk 'NR % 7 == 1' | head -n 60
+  files_of "$1" examples/data ../shared/golden/zoo | xargs -r -d '\n' find -size -64k | awk 'NR % 7 == 1' | head -n 60
   find tests/fuzz/seeds -name "$1-*" | sort
 }
 
 known_of() {
-  files_of "$1" -path '*zoo*'
+  files_of "$1" ../shared/golden/zoo
   find tests/fuzz/regressions -name "$1-*" 2>/dev/null | sort
 }
 

@@ -57,7 +57,7 @@ def main(aib_lua, *programs):
             print("SKIPPED: decimal commas: no localedef or no source of locales (Debian: locales)")
         else:
             failed += differences("decimal commas", printed(aib_lua, folder, 2, locale), expected)
-            environment = {**os.environ, "LOCPATH": folder, "AIB_TEST_LOCALE": locale}
+            environment = {**os.environ, "LOCPATH": folder, "AIB_TEST_LOCALE": locale, "LANGUAGE": "en"}
             for program in programs:
                 run = subprocess.run([program], capture_output=True, text=True, env=environment, check=False)
                 name = pathlib.Path(program).name + ", commas"
