@@ -10,7 +10,7 @@
 #   --scale     tiny: 24 frames of 320 x 180; small: 120 to 180 of 960 x 540; paper: 4763, 642, 1074 of 1920 x 1080
 #   --out       default build/dataset
 #   --soiling   of the office's glass, with commas: very_low,low,medium,high; default: first and last, all at paper
-#   --samples   rays a pixel at most; default 32, 64, 128 by scale (a denoiser is used where Blender has one)
+#   --samples   rays a pixel at most; default 16, 64, 128 by scale (a denoiser is used where Blender has one)
 #   --frames    START:STOP:STEP: render these alone and stop then, for several machines that share the folder
 #
 # Run again after a stop: what is there in full is kept. Then run_colmap.sh FOLDER, aib-lua asset_inspection FOLDER.
@@ -35,7 +35,7 @@ while [ $# != 0 ]; do
 done
 [ ${#scenes[@]} != 0 ] || usage
 case $scale in
-  tiny) : "${samples:=32}" "${soiling:=very_low,high}" ;;
+  tiny) : "${samples:=16}" "${soiling:=very_low,high}" ;;
   small) : "${samples:=64}" "${soiling:=very_low,high}" ;;
   paper) : "${samples:=128}" "${soiling:=very_low,low,medium,high}" ;;
   *) usage ;;
