@@ -29,7 +29,7 @@ local function differs(found, expected) return math.abs(found - expected) > tole
 local function is_between(found, maps, i)
   local low, high = math.huge, 0
   for _, map in ipairs(maps) do low, high = math.min(low, map[i]), math.max(high, map[i]) end
-  return found >= low * (1 - tolerance) and found <= high * (1 + tolerance)
+  return found >= low * (1 - 10 * tolerance) and found <= high * (1 + 10 * tolerance)
 end
 
 local folder, depth = arg[1], arg[2]
