@@ -71,8 +71,9 @@ record as_record(lua_State* state, const align::alignment& a) {
   record r(state);
   r.set("transform", a.transform).set("n_inliers", a.n_inliers);
   r.set("outliers", one_based(a.outliers)).set("rmse", a.rmse).set("half_rmse", a.half_rmse);
-  r.set("condition", a.condition).set("turn_deg", a.turn_deg);
-  return r.set("turn_error", a.turn_error).set("warnings", a.warnings);
+  r.set("condition", a.condition).set("warnings", a.warnings);
+  if (a.turn) r.set("turn_deg", a.turn->deg).set("turn_error", a.turn->error);
+  return r;
 }
 
 /// What `trajectory` gives, with the frames and what is told of batches alone; `degenerate` says

@@ -76,10 +76,11 @@ record errors_with_labels(lua_State* state,
                           const depth_map& reference,
                           const depth::error_options& options) {
   const auto frame = depth::measure(estimate.values.view(), reference.values.view(), options);
-  record r = as_record(state, depth::summarize(frame.sums, frame.transform));
+  record r = bind::as_record(state, depth::summarize(frame.sums, frame.transform));
   if (!options.labels.data) return r;
   return r.set("by_label", records_by_number(state, frame.by_label, [&](const auto& sums) {
-                 return as_record(state, depth::record_of(sums, frame.transform).errors, sums);
+                 return bind::as_record(state, depth::record_of(sums, frame.transform).errors,
+                                        sums);
                }));
 }
 

@@ -33,7 +33,7 @@ record affine_record(lua_State* state, const depth::affine& a) {
 }
 
 record frame_record(lua_State* state, const depth::frame_record& f) {
-  return as_record(state, f.errors, f.sums).set("name", f.name);
+  return bind::as_record(state, f.errors, f.sums).set("name", f.name);
 }
 
 raster::nearest_rule rule_option(options& o) {
@@ -118,7 +118,7 @@ void bind_accumulator(lua_State* state) {
                 const bool pooled = o.flag("pooled", false);
                 o.done();
                 const auto summary = a.result();
-                record r = as_record(l, pooled ? summary.pooled : summary.mean);
+                record r = bind::as_record(l, pooled ? summary.pooled : summary.mean);
                 r.set("n_frames", summary.n_frames).set("n_defined", summary.n_defined);
                 r.set("undefined", summary.undefined);
                 return r;

@@ -211,7 +211,7 @@ record by_name(lua_State* state,
   return out;
 }
 
-named_views views_of(const camera_map& cameras, const camera_map& reference) {
+named_views paired_views(const camera_map& cameras, const camera_map& reference) {
   named_views views;
   for (const auto& [name, camera] : cameras) {
     const auto at = reference.find(name);
@@ -221,8 +221,8 @@ named_views views_of(const camera_map& cameras, const camera_map& reference) {
 }
 
 /// The same; a number is the focal length of every reference camera.
-named_views views_of(const camera_map& cameras, const sol::object& reference) {
-  if (const auto known = read_if<camera_map>(reference)) return views_of(cameras, *known);
+named_views paired_views(const camera_map& cameras, const sol::object& reference) {
+  if (const auto known = read_if<camera_map>(reference)) return paired_views(cameras, *known);
   const auto focal = read_if<double>(reference);
   if (!focal) {
     throw argument_error(
@@ -454,7 +454,7 @@ void bind_intrinsics(module& m) {
                    o.choice("over", focal_over::views,
                             {{"views", focal_over::views}, {"cameras", focal_over::cameras}});
                o.done();
-               const named_views views = views_of(cameras, ref);
+               const named_views views = paired_views(cameras, ref);
                const auto r = pose::focal_error(views.pairs, over);
                record out(l);
                out.set("mre", r.mre).set("n", r.n);
@@ -463,7 +463,7 @@ void bind_intrinsics(module& m) {
              })
       .function("intrinsics_error", {"cameras", "ref"},
                 [](lua_State* l, const camera_map& cameras, const camera_map& ref) {
-                  const auto r = pose::intrinsics_error(views_of(cameras, ref).pairs);
+                  const auto r = pose::intrinsics_error(paired_views(cameras, ref).pairs);
                   record out(l);
                   out.set("focal_mre", r.focal.mre).set("focal_spread", r.focal_spread);
                   out.set("principal_point_px", r.principal_point_px).set("n", r.focal.n);

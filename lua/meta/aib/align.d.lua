@@ -33,8 +33,8 @@ function align.umeyama(est, ref, options) end
 ---@field rmse number  # of the inliers' positions
 ---@field half_rmse number|nil  # of every other inlier, fitted to the others
 ---@field condition number  # first over second singular value of the positions
----@field turn_deg number  # expected error of the turn that the positions tell worst: about their long axis; yaw: about the vertical
----@field turn_error number  # what that moves a point at stand_off
+---@field turn_deg? number  # expected error of the turn that the positions tell worst: about their long axis; yaw: about the vertical; not with rotation_weight or a mode that turns nothing
+---@field turn_error? number  # what that moves a point at stand_off
 ---@field warnings string[]
 
 ---Fits the frame of one trajectory to that of another. An undefined fit says what is free.
