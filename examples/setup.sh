@@ -47,6 +47,8 @@ locales              file /usr/share/i18n/locales/de_DE
 lua-check            program luacheck
 cmake                program cmake
 colmap               program colmap
+blender              program blender
+python3-numpy        python numpy
 valgrind             program valgrind
 doxygen              program doxygen
 snakemake            program snakemake
