@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/io/waypoints.hpp>
+#include <aib/math/geodesy.hpp>
 #include <aib/mesh/distances.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/ray_surface.hpp>
@@ -16,6 +18,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <string>
+#include <support/scratch.hpp>
 #include <vector>
 
 using namespace aib;
@@ -166,18 +170,24 @@ TEST_CASE("a flight round the walls sees them from everywhere, and nothing of ro
   const mesh::ray_surface surface(office);
   const auto plan = survey::fly(office_path(12), {.overlap = 0.7});
   const auto report = survey::measure(views_of(plan), office, surface,
-                                      {.labels = {0}, .samples = 2000, .columns = 16, .rows = 9});
+                                      {.labels = {0}, .samples = 2000, .columns = 64, .rows = 5});
   CHECK(report.area == doctest::Approx(2 * 50 * 15));
   CHECK(report.seen_by(1) == 1);
   CHECK(report.seen_by(3) > 0.99);
   CHECK(report.seen_within(0.5) == 1);
   CHECK(report.seen_by(1000) == 0);
   for (const float gsd : report.gsd) CHECK(gsd >= 0.99f * static_cast<float>(plan.gsd));
-  const double least = *std::min_element(report.overlap.begin(), report.overlap.end());
-  CHECK(least > plan.overlap - 0.15);  // at a corner, where one wall hides behind the other
-  std::vector<double> sorted = report.overlap;
-  std::sort(sorted.begin(), sorted.end());
-  CHECK(std::abs(sorted[sorted.size() / 2] - plan.overlap) < 0.03);
+  // Along the walls as planned; round the corners the camera looks at the same edge for longer, but
+  // one wall hides behind the other.
+  const auto& poses = plan.trajectory.world_from_camera;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    if (poses[i].translation.z() != poses[i + 1].translation.z()) continue;
+    const bool straight = angle_between(poses[i], poses[i + 1]) < 1e-9;
+    const bool at_end = straight && (std::abs(std::abs(poses[i].translation.x()) - 15) < 9 ||
+                                     std::abs(std::abs(poses[i].translation.y()) - 10) < 9);
+    if (straight && !at_end) CHECK(std::abs(report.overlap[i] - plan.overlap) < 0.03);
+    CHECK(report.overlap[i] > plan.overlap - 0.15);
+  }
   const auto flat = survey::measure(views_of(plan), office, surface,
                                     {.labels = {1}, .samples = 500, .columns = 4, .rows = 2});
   CHECK(flat.seen_by(1) < 0.01);
@@ -253,3 +263,56 @@ TEST_CASE("the camera aims along the normal, no faster than the gimbal turns") {
 }
 
 }  // namespace test_flight
+
+TEST_CASE("local places become places on the ellipsoid and back") {
+  // Poles and equator: the axes of WGS84.
+  CHECK(math::earth_from({0, 0, 0}).x() == doctest::Approx(6378137));
+  CHECK(math::earth_from({std::numbers::pi / 2, 0, 0}).z() == doctest::Approx(6356752.314245));
+  const math::geodetic munich{math::radians(48.1), math::radians(11.5), 520};
+  const Eigen::Vector3d local(300, -200, 40);
+  const math::geodetic there = math::geodetic_from_local(local, munich);
+  // Along a meridian and a parallel, by the radii of curvature there.
+  const double sine = std::sin(munich.latitude), e2 = math::wgs84::eccentricity2;
+  const double normal = math::wgs84::major / std::sqrt(1 - e2 * sine * sine);
+  const double meridian = normal * (1 - e2) / (1 - e2 * sine * sine);
+  CHECK((there.latitude - munich.latitude) * (meridian + 520) ==
+        doctest::Approx(-200).epsilon(1e-3));
+  CHECK((there.longitude - munich.longitude) * (normal + 520) * std::cos(munich.latitude) ==
+        doctest::Approx(300).epsilon(1e-3));
+  CHECK(there.altitude == doctest::Approx(560.01).epsilon(1e-5));
+  const math::geodetic again = math::geodetic_from(math::earth_from(there));
+  CHECK(std::abs(again.latitude - there.latitude) < 1e-15);
+  CHECK(std::abs(again.altitude - there.altitude) < 1e-8);
+}
+
+TEST_CASE("waypoints tell place, heading and pitch in three formats") {
+  const support::scratch scratch;
+  const auto plan = survey::fly(
+      survey::along({{0, 0, 10}, {10, 0, 10}}, {{1, 0, 0}, {1, 0, -1}}, {.stand_off = 5}),
+      {.frames = 3, .gimbal_rate = 9});
+  const io::waypoint_options how{.origin = {math::radians(48.0), math::radians(11.0), 500}};
+  const auto points = io::waypoints(plan.trajectory, how);
+  REQUIRE(points.size() == 3);
+  CHECK(points[0].latitude == doctest::Approx(48));
+  CHECK(points[0].altitude == doctest::Approx(510));
+  CHECK(points[0].heading == doctest::Approx(90));
+  CHECK(std::abs(points[1].pitch + 22.5) < 10);
+  CHECK(points[2].pitch == doctest::Approx(-45));
+  const auto text_of = [&](const char* name) {
+    io::write_waypoints(scratch.folder() / name, plan.trajectory, how);
+    return io::read_file(scratch.folder() / name);
+  };
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  CHECK(count(text_of("w.csv"), "\n") == 4);
+  CHECK(count(text_of("w.kml"), "<Placemark>") == 4);
+  const std::string mission = text_of("w.plan");
+  CHECK(count(mission, "\"command\": 16,") == 3);
+  CHECK(count(mission, "\"command\": 2000,") == 3);
+  CHECK(count(mission, "{") == count(mission, "}"));
+  CHECK_THROWS_AS(text_of("w.txt"), argument_error);
+  CHECK_THROWS_AS(io::write_waypoints(scratch.folder() / "w.csv", {}, how), argument_error);
+}

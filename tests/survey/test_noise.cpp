@@ -4,6 +4,7 @@
 #include <aib/math/rotation.hpp>
 #include <aib/pose/trajectory.hpp>
 #include <aib/raster/color.hpp>
+#include <aib/stream/noisy_image.hpp>
 #include <aib/survey/perturb.hpp>
 #include <aib/survey/sensor_noise.hpp>
 
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <support/scratch.hpp>
 #include <vector>
 
 using namespace aib;
@@ -220,3 +223,22 @@ TEST_CASE("intrinsics drift by shares of the focal length") {
 }
 
 }  // namespace test_noise
+
+#ifdef AIB_WITH_PNG
+TEST_CASE("a PNG of 16 bits stays one, another has 8") {
+  const support::scratch scratch;
+  const auto in = scratch.folder() / "in.png", out = scratch.folder() / "out.png";
+  using deep = std::array<std::uint16_t, 3>;
+  const raster::image<deep> card(20, 10, deep{1000, 30000, 65535});
+  io::write_image<deep>(in, card.view());
+  CHECK(io::read_png_color16(in) == card);
+  stream::noisy_image(in, out, {.a = 0, .b = 0});
+  CHECK(io::read_png_color16(out) == card);
+  stream::noisy_image(in, out, {.seed = 5});
+  CHECK(io::read_png_header(out).bits == 16);
+  CHECK(io::read_png_color16(out) == survey::sensor_noise<deep>(card.view(), {.seed = 5}));
+  io::write_image<raster::rgb>(in, raster::color_image(20, 10, {9, 8, 7}).view());
+  stream::noisy_image(in, out);
+  CHECK(io::read_png_header(out).bits == 8);
+}
+#endif

@@ -45,8 +45,12 @@ raster::color_image read_png_color(const std::filesystem::path& path);
 /// Any PNG as 8-bit red, green, blue, alpha.
 raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path);
 
-/// Writes gray (8 or 16 bits), rgb or rgba pixels, whichever the type is. Throws argument_error for
-/// an empty image, io_error where the file cannot be written.
+/// Any PNG as 16-bit red, green, blue: the stored numbers of a file of 16 bits. Transparency is
+/// dropped.
+raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path);
+
+/// Writes gray, rgb or rgba pixels of 8 or 16 bits, whichever the type is. Throws argument_error
+/// for an empty image, io_error where the file cannot be written.
 template <class Pixel>
 void write_png(const std::filesystem::path& path, raster::view<const Pixel> image);
 
@@ -134,6 +138,15 @@ inline raster::image<std::uint16_t> unpack_samples(const std::vector<std::uint8_
   return image;
 }
 
+/// Bits of a channel.
+template <class Pixel>
+constexpr std::uint8_t png_bits() {
+  if constexpr (std::is_integral_v<Pixel>)
+    return 8 * sizeof(Pixel);
+  else
+    return 8 * sizeof(typename Pixel::value_type);
+}
+
 template <class Pixel>
 constexpr int png_color_type() {
   if constexpr (std::is_integral_v<Pixel>)
@@ -179,6 +192,18 @@ inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::files
   return image;
 }
 
+inline raster::image<std::array<std::uint16_t, 3>> read_png_color16(
+    const std::filesystem::path& path) {
+  detail::png_decoder decoder(path);
+  const png_header header = decoder.header();
+  std::vector<std::array<std::uint16_t, 4>> pixels(header.width * header.height);
+  decoder.decode(SPNG_FMT_RGBA16, pixels.data(), 8 * pixels.size());
+  raster::image<std::array<std::uint16_t, 3>> image(header.width, header.height);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    image.data()[i] = {pixels[i][0], pixels[i][1], pixels[i][2]};
+  return image;
+}
+
 template <class Pixel>
 void write_png(const std::filesystem::path& path, raster::view<const Pixel> image) {
   if (image.empty()) throw argument_error("io::write_png: an empty image");
@@ -191,7 +216,7 @@ void write_png(const std::filesystem::path& path, raster::view<const Pixel> imag
   spng_ihdr ihdr = {};
   ihdr.width = static_cast<std::uint32_t>(image.width);
   ihdr.height = static_cast<std::uint32_t>(image.height);
-  ihdr.bit_depth = std::is_same_v<Pixel, std::uint16_t> ? 16 : 8;
+  ihdr.bit_depth = detail::png_bits<Pixel>();
   ihdr.color_type = static_cast<std::uint8_t>(detail::png_color_type<Pixel>());
   std::size_t n = 0;
   int code = context ? 0 : 1;

@@ -97,6 +97,13 @@ function io.read_opensfm_components(path) end
 ---@param options? { format?: "tum"|"kitti"|"colmap"|"transforms"|"npy", cameras?: table<string, aib.Camera>, encoding?: "binary"|"text", convention?: "world_from_camera"|"camera_from_world", axes?: "opencv"|"opengl" }
 function io.write_trajectory(path, trajectory, options) end
 
+---Writes the poses as waypoints of a drone: .csv (a line each), .kml (a line on a map) or .plan (QGroundControl: gimbal,
+---waypoint and picture for each pose, heights from the origin). Poses are x east, y north, z up.
+---@param path string
+---@param trajectory aib.Trajectory
+---@param options { origin: number[], speed?: number }  # {latitude, longitude, altitude} of 0, 0, 0; 2 m/s
+function io.write_waypoints(path, trajectory, options) end
+
 ---An array of an NPY file, or of an NPZ file by its key (not needed where there is one alone).
 ---Pickled objects are never loaded.
 ---@param path string
