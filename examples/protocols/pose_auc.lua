@@ -5,6 +5,7 @@
 ---
 ---   aib-lua pose_auc --estimate vggt.npz,colmap/sparse/0 --reference transforms.json --convention paper,vggt
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local trajectories = require "aib.trajectories"
 
 --- The estimate against the whole reference where frames have names: missing frames count in colmap's convention.
@@ -24,6 +25,11 @@ local function score(estimate, input)
       options = { max_deg = input.max_deg } }
     cell:add("auc." .. convention, auc and auc.auc, how)
     cell:add("auc_signed." .. convention, auc and auc.auc_signed, how)
+  end
+  if cell:draws() then
+    cell:attempt(function()
+      drawings.pose_recall(cell, aib.pose.auc(est, ref, { max_deg = input.max_deg }), est, ref)
+    end)
   end
   local angles, reason = cell:attempt(function() return aib.pose.relative_angles(est, ref, { tau = input.tau }) end)
   for _, tau in ipairs(input.tau) do

@@ -5,6 +5,7 @@
 ---
 ---   aib-lua tum_rgbd --estimate orb.txt,dso.txt --reference groundtruth.txt
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 local trajectories = require "aib.trajectories"
 
 return aib.protocol {
@@ -23,7 +24,9 @@ return aib.protocol {
       local turn = { delta = input.delta, all_pairs = true, relation = "angle_deg" }
       cell:add("tum.ate_rmse", function()
         local fit = aib.align.trajectory(estimate.est, ref, { mode = "se3" })
-        return aib.pose.ape(fit.transform * estimate.est, ref).rmse
+        local est = fit.transform * estimate.est
+        drawings.trajectory(cell, est, ref)
+        return aib.pose.ape(est, ref).rmse
       end, { unit = "m", better = "lower", n = #ref, options = { align = "se3" } })
       cell:add("tum.rpe_translation_rmse", function() return aib.pose.rpe(estimate.est, ref, drift).rmse end,
         { unit = "m", better = "lower", options = { delta = input.delta } })

@@ -12,7 +12,8 @@ local M = {}
 local formats <const> = { "json", "csv", "markdown", "latex", "html" }
 local format_help <const> = {
   json = "every number with its convention, options and sources", csv = "the records, a line each",
-  markdown = "the tables as Markdown", latex = "the tables as LaTeX (booktabs)", html = "a page that opens from disk: tables, charts, frames, 3-D",
+  markdown = "the tables as Markdown", latex = "the tables as LaTeX (booktabs)",
+  html = "a page that opens from disk: tables, charts, frames, 3-D",
 }
 
 --- Names that no input can have.

@@ -77,7 +77,8 @@ local function state_inputs(report, list, values)
       end
     end
     if kind ~= "folder" and kind ~= "path" then report.store.inputs[input.key] = value end
-    if kind == "folder" then table.insert(report.store.places, inputs.label(input)) end
+    local lies_elsewhere = input.default == nil and (kind == "folder" or kind == "path")
+    if lies_elsewhere then table.insert(report.store.places, inputs.label(input)) end
   end
 end
 

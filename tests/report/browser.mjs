@@ -159,6 +159,7 @@ const tests = {
     assert.equal(await page.evaluate(() => window.broken), undefined);
     assert.equal(await page.locator("img").count(), 0);
     assert.match(await page.title(), /<\/script>/);
+    assert.match(await page.locator("footer").textContent(), /three \d.*uplot \d/s);
   },
 
   async "a narrow window scrolls down only"() {

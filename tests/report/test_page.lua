@@ -5,6 +5,8 @@
 local aib = require "aib"
 local html = require "aib.report.html"
 
+local here <const> = arg[0]:match("^(.*)/[^/]*$") or "."
+
 local nasty <const> = "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\">&amp;\u{2028}"
 
 local function report_of(add, drawn)
@@ -132,6 +134,23 @@ return aib.test {
     local figures = require("aib.report.figures").of(report)
     t:equal(figures[1].rows[1].low, 0.1)
     t:contains(html(report), "<svg ")
+  end,
+
+  ["confidence that orders as errors do lies on the order by error"] = function(t)
+    local drawings = require "aib.evaluation.drawings"
+    local map = here .. "/../../examples/data/gt/office/depth/000000.exr"
+    local ref <close> = aib.io.read_depth(map)
+    local est <close> = aib.io.read_depth(map)
+    local report = report_of(function(report)
+      local curves = {}
+      drawings.add_risk(report, curves, est, ref, ref, { scale = 1.1, shift = 0 })
+      drawings.risk(report, curves)
+    end, true)
+    local lines = require("aib.report.figures").of(report)[1].lines
+    t:equal(#lines, 2)
+    for _, line in ipairs(lines) do
+      for _, y in ipairs(line.y) do t:near(y, 0.1, 1e-6) end
+    end
   end,
 
   ["nothing is kept for a page that nobody asked for"] = function(t)

@@ -4,6 +4,7 @@
 --- Methods that reconstruct in batches, for the protocol asset_inspection.
 local aib = require "aib"
 local depth = require "aib.evaluation.depth"
+local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
 local points = require "aib.evaluation.points"
 local suggest = require "aib.suggest"
@@ -94,17 +95,19 @@ end
 local function score_batch_depth(fit, truth, how, input, cell, frames)
   local has_truth = {}
   for _, name in ipairs(truth.depth_names) do has_truth[name] = true end
-  local all, scaled, gsd = aib.depth.accumulate(), aib.depth.accumulate(), {}
+  local all, scaled, gsd, risks = aib.depth.accumulate(), aib.depth.accumulate(), {}, {}
   for _, part in ipairs(fit.parts) do
     local scale = part.alignment and part.alignment.transform.scale
     local own = aib.depth.accumulate { transform = { scale = scale or 1 } }
     for i, name in ipairs(part.batch.names) do
       local est <close> = has_truth[name] and part.batch.depth(i) or nil
-      if est then depth.add_frame(own, gsd, name, est, scale, truth, input, cell) end
+      local confidence <close> = est and cell:draws() and part.batch.confidence and part.batch.confidence(i) or nil
+      if est then depth.add_frame(own, gsd, name, est, scale, truth, input, cell, confidence, risks) end
     end
     all:merge(own)
     if scale then scaled:merge(own) end
   end
+  drawings.risk(cell, risks)
   if #all > 0 then depth.add_depth(all, #scaled > 0 and scaled or nil, gsd, truth, how, input, cell, frames) end
 end
 

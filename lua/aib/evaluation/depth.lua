@@ -21,13 +21,15 @@ local strata <const> = { "inside", "edge", "thin" }
 
 --- Adds a frame's errors to an accumulator; the truth is brought to the method's size, never the other way. Shares
 --- within some ground sampling distances go to `gsd`, by tau, where the scale is known. A page shows the frame in
---- `cell`.
-function M.add_frame(errors, gsd, name, est, scale, truth, input, cell)
+--- `cell`, and `risks` takes what its confidence, where there is one, is worth.
+function M.add_frame(errors, gsd, name, est, scale, truth, input, cell, confidence, risks)
   local full <close> = truth.depth(name)
   local ref <close> = aib.depth.downsample(full, est.width, est.height, { rule = input.rule })
   errors:add(est, ref, { name = name, labels = input.details and aib.depth.strata(ref) or nil })
   truth.drawn = truth.drawn or drawings.chosen(truth.depth_names)
-  drawings.frame(cell, truth.drawn, name, est, ref, { scale = scale or 1, shift = 0 })
+  local transform = { scale = scale or 1, shift = 0 }
+  drawings.frame(cell, truth.drawn, name, est, ref, transform)
+  if truth.drawn[name] then drawings.add_risk(cell, risks, est, ref, confidence, transform) end
   local camera = input.details and scale and (truth.cameras or {})[name]
   if not camera then return end
   local ok, surface = pcall(aib.depth.surface_errors, est, ref, camera, {

@@ -105,6 +105,35 @@ function M.depth_series(cell, frames)
   end
 end
 
+--- Adds how a frame's confidence foretells its errors to `curves`.
+function M.add_risk(cell, curves, est, ref, confidence, transform)
+  if not confidence or not cell:draws() then return end
+  local curve = cell:attempt(function()
+    return aib.depth.risk_coverage(est, ref, confidence, { transform = transform })
+  end)
+  curves[#curves + 1] = curve
+end
+
+local function mean_of(curves, field)
+  local mean = {}
+  for i = 1, #curves[1][field] do
+    local sum = 0
+    for _, curve in ipairs(curves) do sum = sum + curve[field][i] end
+    mean[i] = sum / #curves
+  end
+  return mean
+end
+
+--- Mean error of the most confident pixels against their share, over frames.
+function M.risk(cell, curves)
+  if #curves == 0 then return end
+  for _, part in ipairs { { "risk", "by confidence" }, { "oracle", "by error" } } do
+    cell:curve { title = "Depth, risk against coverage", label = part[2], at = curves[1].coverage,
+      x = { label = "share of pixels kept", low = 0, high = 1 }, y = { label = "mean relative error" },
+      values = mean_of(curves, part[1]), text = "The nearer to the order by error, the better the confidence." }
+  end
+end
+
 local n_taus <const> = 40
 
 --- Thresholds in equal ratios.

@@ -7,10 +7,10 @@
 ---
 ---   chart = { title =, width =, height =, x = axis, y = axis, lines = { line, ... }, equal = true|nil, bar = bar|nil,
 ---             frames = names of x = 1, 2, ... }
----   axis  = { label =, unit =, scale = "linear" | "log", low =, high = }      bounds where the data is not to give them
+---   axis  = { label =, unit =, scale = "linear" | "log", low =, high = }    bounds where the data is not to give them
 ---   line  = { label =, x = numbers, y = numbers, color =, dash =, width =, place = number of its colour,
 ---             colors = one a piece }
----   bar   = { label =, high =, colors = list }                                the colours of values from 0 to high
+---   bar   = { label =, high =, colors = list }                              the colours of values from 0 to high
 local axes = require "aib.report.axes"
 local markup = require "aib.report.markup"
 

@@ -47,6 +47,7 @@ class Triptych {
   constructor(place) {
     this.index = 0;
     this.result = choice("result", groups.map((group, i) => [i, nameOf(group) || "all"]), () => this.choose());
+    this.result.element.hidden = groups.length === 1;
     this.slider = el("input", { type: "range", min: 0, value: 0, "aria-label": "frame", input: () => {
       this.index = Number(this.slider.value);
       this.draw();

@@ -35,6 +35,7 @@ class Panel {
       el("div", { class: "controls" }, this.toggles, el("label", { class: "choice" }, el("span", {}, "point size"), size)));
     this.view = new View(this.canvas);
     shared.pointSize.value = 3 * Math.min(devicePixelRatio, 2);
+    this.left.element.hidden = this.right.element.hidden = places.length === 1;
     if (places.length > 1) onFilter(() => this.followFilter());
     this.load();
   }
@@ -49,7 +50,8 @@ class Panel {
     this.from = field("first colour at");
     this.to = field("last colour at");
     this.unit = el("span", {});
-    return el("div", { class: "scale range" }, this.from, bar, this.to, this.unit);
+    this.bar = el("div", { class: "scale range" }, this.from, bar, this.to, this.unit);
+    return this.bar;
   }
 
   followFilter() {
@@ -112,6 +114,7 @@ class Panel {
   setRange() {
     const colorings = this.panes.flatMap(({ layers }) => layers.filter((l) => l.isOn && l.coloring).map((l) => l.coloring));
     const high = Math.max(0, ...colorings.map(highOf));
+    this.bar.hidden = colorings.length === 0;
     shared.range.value.set(0, high || 1);
     this.from.value = 0;
     this.to.value = rough(high || 1);
