@@ -73,20 +73,21 @@ end
 
 local bridge = { name = "bridge" }
 
---- Lanes along both sides from the deck to the crown of the arch, then under the deck and over the road.
+--- Lanes along one side from the crown of the arch down to the deck, below the deck, up the other side, over the road.
 function bridge.paper(asset, camera, scene)
-  local middle = (asset.low[3] + asset.high[3]) / 2
-  local from, to = { asset.low[1], 0, middle }, { asset.high[1], 0, middle }
-  local sides = {}
-  for k, y in ipairs { 1, -1 } do
-    sides[k] = aib.survey.linear { camera = camera, from = from, to = to, views = { { 0, y, 0 } },
-      width = asset.high[3] - asset.low[3], radius = asset.high[2], stand_off = 7.5, overlap_across = 0.5 }
+  local low, high = asset.low, asset.high
+  local function side(y, from, to)
+    local middle = (low[3] + high[3]) / 2
+    return aib.survey.linear { camera = camera, from = { from, 0, middle }, to = { to, 0, middle },
+      views = { { 0, y, 0 } }, width = high[3] - low[3], radius = high[2], stand_off = 7.5, overlap_across = 0.5 }
   end
-  local below = aib.survey.linear { camera = camera, from = { to[1] - 6, 0, scene.deck - 1.2 },
-    to = { from[1] + 6, 0, scene.deck - 1.2 }, views = { { 0, 0.35, 1 } }, stand_off = 5.2 }
-  local above = aib.survey.linear { camera = camera, from = { from[1], 0, scene.deck }, to = { to[1], 0, scene.deck },
+  local girders = scene.deck - 1.2
+  local below = aib.survey.linear { camera = camera, from = { -21, 0, girders }, to = { 21, 0, girders },
+    views = { { 0, 0.35, 1 } }, stand_off = 5.2 }
+  local above = aib.survey.linear { camera = camera, from = { high[1], 0, scene.deck }, to = { low[1], 0, scene.deck },
     views = { { 0, 0, -1 } }, stand_off = 15 }
-  return aib.survey.join { sides[1], below, sides[2], above }, { frames = 1074, min_distance = 1.5 }
+  local path = aib.survey.join { side(1, low[1], high[1]):reversed(), below, side(-1, high[1], low[1]), above }
+  return path, { frames = 1074, min_distance = 1.5 }
 end
 
 function bridge.small(asset, camera, scene)

@@ -31,5 +31,5 @@ for k, views in ipairs(aib.render.visible(scene, samples, trajectory, cameras)) 
   if views >= min_views then seen[#seen + 1] = samples[k] end
 end
 aib.io.write_cloud(folder .. "/points.ply", aib.cloud.from_points(seen))
-print(("%s: %d frames, %d of %d points in %d views or more"):format(folder, written.n_frames + written.n_kept, #seen, #samples,
-  min_views))
+print(("%s: %d frames, %d of %d points in %d views or more"):format(folder, written.n_frames + written.n_kept, #seen,
+  #samples, min_views))
