@@ -27,7 +27,7 @@ local office = { name = "office" }
 --- Rows round all facades, then lanes over the roof, above the antenna.
 function office.paper(asset, camera)
   local facade = aib.survey.facade { camera = camera, footprint = corners(asset), low = 0.3, high = asset.high[3],
-    stand_off = 5.6 }
+    stand_off = 6.2 }
   local roof = aib.survey.linear { camera = camera, from = { -13, 0, 14 }, to = { 13, 0, 14 },
     views = { { 0, 0, -1 } }, width = 19, stand_off = 8.5 }
   return aib.survey.join { facade, roof }, { frames = 4763, min_distance = 2 }

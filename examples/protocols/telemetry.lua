@@ -13,17 +13,17 @@
 ---   aib-lua telemetry truth/transforms.json --runs 'results/{run}/sparse/0'
 local aib = require "aib"
 
---- What can be swept: options of aib.survey.perturb for a value, and its unit.
+--- What can be swept: options of aib.survey.perturb for a value, and its unit (of poses without stamps: per frame).
 local kinds <const> = {
   position_noise = { unit = "m", of = function(x) return { position_noise = x } end },
-  position_walk = { unit = "m/s^0.5", of = function(x) return { position_walk = x } end },
+  position_walk = { unit = "m/s^0.5", per_frame = "m/frame^0.5", of = function(x) return { position_walk = x } end },
   position_bias = { unit = "m", of = function(x) return { position_bias = { x, 0, 0 } } end },
   yaw_bias = { unit = "deg", of = function(x) return { yaw_bias = x } end },
   yaw_noise = { unit = "deg", of = function(x) return { yaw_noise = x } end },
   gimbal_bias = { unit = "deg", of = function(x) return { gimbal_bias = { x, 0, 0 } } end },
   gimbal_noise = { unit = "deg", of = function(x) return { gimbal_noise = { x, x, x } } end },
   lever_arm = { unit = "m", of = function(x) return { lever_arm = { 0, -x, 0 } } end },
-  time_offset = { unit = "s", of = function(x) return { time_offset = x } end },
+  time_offset = { unit = "s", per_frame = "frames", of = function(x) return { time_offset = x } end },
   dropout = { unit = "share", of = function(x) return { dropout = x } end },
 }
 
@@ -33,7 +33,9 @@ local metrics <const> = {
   { name = "angle", relation = "angle_deg", unit = "deg", limit = "limit_deg" },
 }
 
-local function sweep_of(text)
+local rounding <const> = 1e-9  -- errors below are none
+
+local function sweep_of(text, truth)
   local kind, values = text:match "^([%w_]+)=(.+)$"
   if not kinds[kind or ""] then
     local known = {}
@@ -47,7 +49,7 @@ local function sweep_of(text)
     levels[#levels + 1] = tonumber(word) or error(("sweep: a number expected, found '%s' in %s"):format(word, text), 0)
   end
   table.sort(levels)
-  return { kind = kind, levels = levels }
+  return { kind = kind, levels = levels, unit = #truth.stamps == 0 and kinds[kind].per_frame or kinds[kind].unit }
 end
 
 --- The poses that both have, paired.
@@ -81,7 +83,8 @@ local function estimate_for(input, estimate, prior, run)
   end
   if not estimate then return nil end
   local mine, of_prior = paired(estimate, prior)
-  local fit = aib.align.trajectory(mine, of_prior, { mode = "sim3", outlier_factor = input.outlier_factor })
+  local fit = aib.align.trajectory(mine, of_prior, { mode = "sim3", outlier_factor = input.outlier_factor,
+    rotation_weight = input.rotation_weight > 0 and input.rotation_weight or nil })
   return fit.transform * estimate
 end
 
@@ -136,14 +139,14 @@ local function add_level(cell, means)
     local how = { unit = metric.unit, better = "lower", n = means.n }
     cell:add("telemetry." .. metric.name, prior, how)
     cell:add("estimate." .. metric.name, estimate, how)
-    -- 1: no error is left of the telemetry's; below 0: the telemetry alone was better.
-    local skill = estimate and prior and prior > 0 and 1 - estimate / prior or nil
+    -- 1: no error is left of the telemetry's; below 0: the telemetry alone was better. None where it has no error.
+    local skill = estimate and prior and prior > rounding and 1 - estimate / prior or nil
     cell:add("skill." .. metric.name, skill, { better = "higher", n = means.n })
   end
 end
 
 local function add_break_points(input, cell, sweep, by_level)
-  local unit = kinds[sweep.kind].unit
+  local unit = sweep.unit
   for _, metric in ipairs(metrics) do
     for _, who in ipairs { "prior", "estimate" } do
       local values, n = {}, 0
@@ -171,7 +174,7 @@ local function draw(cell, sweep, by_level)
       if #at > 1 then
         cell:within({ method = who == "prior" and "telemetry" or "estimate" }):curve { at = at, values = values,
           title = ("%s error over %s"):format(metric.name, sweep.kind),
-          x = { label = sweep.kind, unit = kinds[sweep.kind].unit }, y = { label = "rmse", unit = metric.unit } }
+          x = { label = sweep.kind, unit = sweep.unit }, y = { label = "rmse", unit = metric.unit } }
       end
     end
   end
@@ -181,9 +184,9 @@ local function sweep_all(input, report)
   local truth = aib.io.read_trajectory(input.truth)
   local estimate = input.estimate ~= "" and aib.io.read_trajectory(input.estimate) or nil
   for _, text in ipairs(input.sweep) do
-    local sweep, by_level = sweep_of(text), {}
+    local sweep, by_level = sweep_of(text, truth), {}
     for k, level in ipairs(sweep.levels) do
-      local name = ("%g %s"):format(level, kinds[sweep.kind].unit)
+      local name = ("%g %s"):format(level, sweep.unit)
       local cell = report:within { sweep = sweep.kind, level = name }
       by_level[k] = level_errors(input, truth, estimate, sweep.kind, level, cell)
       add_level(cell, by_level[k])
@@ -212,6 +215,8 @@ return aib.protocol {
     limit_deg = { kind = "number", unit = "deg", default = 1, min = 0, help = "the same of angles" },
     repeats = { kind = "integer", default = 5, min = 1, help = "telemetries at each level" },
     seed = { kind = "integer", default = 1, min = 0, help = "of the first of them" },
+    rotation_weight = { kind = "number", unit = "m", default = 0, min = 0,
+      help = "orientations of the telemetry count in the fit, a radian as this length" },
     outlier_factor = { kind = "number", default = 3, min = 0,
       help = "poses farther than this times the median distance from the median position do not count in the fit" },
   },
