@@ -157,8 +157,8 @@ local function add_break_points(input, cell, sweep, by_level)
       local limit = input[metric.limit]
       local found = break_point(sweep.levels, values, limit)
       local name = (who == "prior" and "telemetry" or "estimate") .. "." .. metric.name .. "_break"
-      local reason = n == 0 and "there is no estimate" or not found and ("%s: below %g %s up to %g %s"):format(
-        sweep.kind, limit, metric.unit, sweep.levels[#sweep.levels], unit) or nil
+      local reason = n == 0 and "there is no estimate" or not found and ("below %g %s up to %g %s"):format(
+        limit, metric.unit, sweep.levels[#sweep.levels], unit) or nil
       cell:add(name, found, { better = "higher", n = n, options = { limit = limit, unit = unit }, note = reason })
     end
   end
