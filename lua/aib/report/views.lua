@@ -81,7 +81,11 @@ function pack.cloud(spec)
   return points
 end
 
+local most_triangles <const> = 500000
+
+--- A mesh that is too large for a page is named in it, and left out.
 function pack.mesh(spec)
+  if spec.mesh.n_triangles > most_triangles then return { n_triangles = spec.mesh.n_triangles, is_left_out = true } end
   local mesh = packed.mesh(spec.mesh)
   mesh.faces = json.list()
   for i, face in ipairs(spec.faces or {}) do

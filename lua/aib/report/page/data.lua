@@ -14,10 +14,16 @@ local packed_fields <const> = {
   positions = true, triangles = true, data = true, estimate = true, reference = true, error = true,
 }
 
---- A copy of a value in which packed data is replaced by its number in `blobs`; the same data is there once.
+--- A copy of a value in which packed data is replaced by its number in `blobs`; the same data is there once. Lists hold
+--- numbers and further tables.
 local function without_data(value, blobs)
   if type(value) ~= "table" or value == json.null then return value end
-  local copy = getmetatable(value) == getmetatable(json.list()) and json.list() or {}
+  if getmetatable(value) == getmetatable(json.list()) then
+    local list = json.list()
+    for i, element in ipairs(value) do list[i] = without_data(element, blobs) end
+    return list
+  end
+  local copy = {}
   for _, key in ipairs(suggest.keys(value)) do
     local element = value[key]
     if packed_fields[key] and type(element) == "string" then

@@ -11,7 +11,11 @@ import { isPartOf, nameOf } from "../filter.js";
 import { faceMaterial, pointMaterial } from "./materials.js";
 
 const kinds = new Set(["cloud", "mesh", "cameras"]);
-const views = report.views.filter((view) => kinds.has(view.kind));
+const views = report.views.filter((view) => kinds.has(view.kind) && !view.is_left_out);
+
+/// What is too large to be here.
+export const leftOut = report.views.filter((view) => view.is_left_out)
+  .map((view) => `The mesh of ${nameOf(view.group)} has ${view.n_triangles} faces, too many for a page.`);
 
 /// Groups that have geometry and are not part of another one: those are what can be looked at.
 export const places = [...new Map(views.map((view) => [nameOf(view.group), view.group])).values()]

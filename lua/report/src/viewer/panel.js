@@ -6,7 +6,7 @@ import { gradient, sequential } from "../colors.js";
 import { button, choice, el, rough } from "../dom.js";
 import { isShown, nameOf, onFilter } from "../filter.js";
 import { hasFrame, openFrame } from "../frames.js";
-import { highOf, layersOf, places } from "./layers.js";
+import { highOf, layersOf, leftOut, places } from "./layers.js";
 import { shared } from "./materials.js";
 import { View } from "./view.js";
 
@@ -33,6 +33,7 @@ class Panel {
           button(text, () => this.view.look(this.low, this.high, direction)))),
       el("div", { class: "stage" }, this.canvas, this.labels), this.told, this.scale(),
       el("div", { class: "controls" }, this.toggles, el("label", { class: "choice" }, el("span", {}, "point size"), size)));
+    place.append(...[...new Set(leftOut)].map((text) => el("p", { class: "note" }, text)));
     this.view = new View(this.canvas);
     shared.pointSize.value = 3 * Math.min(devicePixelRatio, 2);
     this.left.element.hidden = this.right.element.hidden = places.length === 1;
