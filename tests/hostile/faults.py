@@ -239,6 +239,14 @@ class Faults(unittest.TestCase):
                     self.refused(done, 3, self.folder)
                     subprocess.run(["rm", "-rf", path], check=True)
 
+    def test_names_that_no_file_can_have(self):
+        for name in ("x" * 300, "/".join(["loop"] * 3)):
+            (self.folder / "loop").unlink(missing_ok=True)
+            (self.folder / "loop").symlink_to("loop")
+            for reader in ("read_trajectory", "read_cameras", "read_colmap", "read_cloud", "read_opensfm_components"):
+                with self.subTest(reader, name=name[:9]):
+                    self.refused(shell(f"aib.io.{reader}(arg[1])", self.folder / name), 3, self.folder)
+
     def test_an_input_that_may_not_be_read(self):
         path = self.folder / "a.ply"
         path.write_text("ply\n")

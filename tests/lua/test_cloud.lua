@@ -172,6 +172,10 @@ return aib.test {
     t:equal(info.floor < 0.2, true)
   end,
 
+  ["a threshold that is no number is refused"] = function(t)
+    t:raises("a threshold is not a number (NaN)", aib.cloud.compare, on_x(0), on_x(1), { tau = 0 / 0 })
+  end,
+
   ["voxels thin a cloud"] = function(t)
     t:equal(#aib.sample.voxel(on_x(0.1, 0.2, 1.5), { size = 1 }), 2)
   end,

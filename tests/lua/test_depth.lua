@@ -118,6 +118,14 @@ return aib.test {
     t:equal(aib.depth.boundary_f1(estimate, reference), 0.0)
   end,
 
+  ["options inside options are checked as all are"] = function(t)
+    t:raises("aib.depth.evaluate: unknown option 'chanel', did you mean 'channel'?",
+      aib.depth.evaluate, {}, { estimate = { chanel = "Z" } })
+    local loop = {}
+    loop[1] = loop
+    t:raises("lists of numbers of one size, expected", aib.io.array, loop)
+  end,
+
   ["risk falls where a confidence knows"] = function(t)
     local estimate, reference = aib.depth.map { { 1, 2, 4 } }, aib.depth.map { { 1, 1, 1 } }
     local curve = aib.depth.risk_coverage(estimate, reference, aib.depth.map { { 9, 5, 1 } }, { steps = 3 })

@@ -35,6 +35,13 @@ TEST_CASE("values are picked, never mixed") {
   CHECK(target(1, 0) == 6 + 4);
 }
 
+TEST_CASE("an image that is larger than memory can be is refused, not overflowed") {
+  const auto side = std::size_t{1} << 32;
+  CHECK_THROWS_WITH_AS(raster::image<float>(side, side),
+                       "an image of 4294967296 x 4294967296 pixels is larger than memory can be",
+                       argument_error);
+}
+
 TEST_CASE("an empty image or target is refused") {
   const raster::image<int> none;
   CHECK_THROWS_AS(raster::resample_nearest<int>(none.view(), 2, 2), argument_error);
