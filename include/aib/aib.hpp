@@ -14,7 +14,10 @@
 #include <aib/mesh.hpp>
 #include <aib/pose.hpp>
 #include <aib/raster.hpp>
+#include <aib/render.hpp>
+#include <aib/report.hpp>
 #include <aib/sample.hpp>
 #include <aib/search.hpp>
 #include <aib/stats.hpp>
 #include <aib/stream.hpp>
+#include <aib/survey.hpp>

@@ -61,6 +61,7 @@
 #include <aib/io/trajectory_check.hpp>
 #include <aib/io/trajectory_write.hpp>
 #include <aib/io/tum.hpp>
+#include <aib/io/waypoints.hpp>
 #include <aib/io/xyz.hpp>
 
 #if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)

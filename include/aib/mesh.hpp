@@ -10,5 +10,6 @@
 #include <aib/mesh/face_scores.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/offsets.hpp>
+#include <aib/mesh/ray_surface.hpp>
 #include <aib/mesh/surface.hpp>
 #include <aib/mesh/transform.hpp>

@@ -13,4 +13,9 @@
 #include <aib/search/nearest_one.hpp>
 #include <aib/search/nearest_packet.hpp>
 #include <aib/search/radix_sort.hpp>
+#include <aib/search/ray_fan.hpp>
+#include <aib/search/ray_one.hpp>
+#include <aib/search/ray_trace.hpp>
+#include <aib/search/ray_tree.hpp>
+#include <aib/search/ray_triangles.hpp>
 #include <aib/search/triangle_tree.hpp>

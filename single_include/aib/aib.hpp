@@ -1086,6 +1086,12 @@ struct trajectory_options {
   double stand_off = 10;  ///< distance at which the error of a turn is foretold, reference's unit
 };
 
+/// How well the positions tell the turn that they tell worst.
+struct turn_doubt {
+  double deg;    ///< its expected error, <= 90
+  double error;  ///< what that moves a point `stand_off` away from its axis
+};
+
 /// How one trajectory lies in the world of another.
 struct alignment {
   math::sim3 transform;               ///< ref_from_est
@@ -1093,9 +1099,8 @@ struct alignment {
   std::vector<std::size_t> outliers;  ///< registered frames that it did not use, of those offered
   double rmse;                        ///< of the inliers' positions, unit of the reference
   std::optional<double> half_rmse;    ///< of every other inlier under a fit to the others
-  double condition;   ///< first over second singular value of the positions, of the worse side
-  double turn_deg;    ///< expected error of the turn that the positions tell worst, <= 90
-  double turn_error;  ///< what that moves a point `stand_off` away from its axis
+  double condition;  ///< first over second singular value of the positions, of the worse side
+  std::optional<turn_doubt> turn;  ///< of a fit that turns, to positions alone
   std::vector<std::string> warnings;
 };
 
@@ -1158,7 +1163,7 @@ inline std::optional<double> half_rmse(const pose_fit& fit, std::span<const std:
 inline std::string turn_warning(const alignment& a, const Eigen::Vector3d& axis, double stand_off) {
   return message("the turn about ", direction_text(axis), ", along which the positions lie ",
                  "(condition ", std::round(a.condition), "), is known to +-",
-                 std::round(a.turn_deg * 10) / 10, " deg, ", std::round(a.turn_error * 100) / 100,
+                 std::round(a.turn->deg * 10) / 10, " deg, ", std::round(a.turn->error * 100) / 100,
                  " at a distance of ", stand_off, "; rotation_weight uses the orientations");
 }
 
@@ -1194,8 +1199,7 @@ inline alignment trajectory(const pose::trajectory& estimate,
                 .rmse = 0,
                 .half_rmse = detail::half_rmse(fit, used),
                 .condition = 1,
-                .turn_deg = 0,
-                .turn_error = 0,
+                .turn = std::nullopt,
                 .warnings = {}};
   std::vector<std::size_t> left_out;
   std::set_difference(offered.begin(), offered.end(), used.begin(), used.end(),
@@ -1214,10 +1218,9 @@ inline alignment trajectory(const pose::trajectory& estimate,
     // Of both sides the thinner: noise widens a line, it never narrows one.
     const double lever = std::min(out.transform.scale * in_estimate.lever, in_reference.lever);
     const double turn = detail::turn_sigma(lever, sse, used.size(), detail::parameters_of(mode));
-    out.turn_deg = math::degrees(turn);
-    out.turn_error = 2 * options.stand_off * std::sin(turn / 2);
+    out.turn = {math::degrees(turn), 2 * options.stand_off * std::sin(turn / 2)};
     const bool thin = !is_about_vertical(mode) && 1 / out.condition < doubted_ratio;
-    if (thin || out.turn_deg > 5)
+    if (thin || out.turn->deg > 5)
       out.warnings.push_back(detail::turn_warning(out, in_reference.axis, options.stand_off));
   }
   if (has_scale(mode)) {
@@ -1621,7 +1624,7 @@ struct chunk {
 /// `size` alone, so that per-chunk results combined in order are bit-identical for any number of
 /// threads.
 ///
-/// threads   0: available_threads()
+/// threads   0: available_threads(); fewer where the system gives no more
 ///
 /// A call from inside a body runs on the calling thread. The first exception (lowest chunk) is
 /// rethrown. Throws stopped_error when `control.stop` was requested.
@@ -1738,7 +1741,10 @@ void for_each_chunk(
   {
     std::vector<std::jthread> pool;
     pool.reserve(workers - 1);
-    for (std::size_t i = 1; i < workers; ++i) pool.emplace_back([&] { region.work(body); });
+    try {
+      for (std::size_t i = 1; i < workers; ++i) pool.emplace_back([&] { region.work(body); });
+    } catch (const std::system_error&) {  // a limit of threads or memory: fewer do the work
+    }
     region.work(body);
   }
   region.finish();
@@ -2782,7 +2788,10 @@ inline namespace AIB_ISA {
 
 /// Squared length in the one order of operations that all searches use: rounding is monotone, so a
 /// box never seems farther than a point in it, and pruning loses no nearest neighbour.
-inline f32x8 squared_length(f32x8 x, f32x8 y, f32x8 z) { return (x * x + y * y) + z * z; }
+template <class Lanes>
+Lanes squared_length(Lanes x, Lanes y, Lanes z) {
+  return (x * x + y * y) + z * z;
+}
 
 /// Eight-fold a point.
 struct query {
@@ -2884,6 +2893,128 @@ inline float nearest_one(const box_tree& tree,
 }  // namespace AIB_ISA
 }  // namespace aib::search
 
+// aib/core/simd_wide.hpp
+
+namespace aib {
+
+inline namespace AIB_ISA {
+
+#if !defined(AIB_PLAIN) && defined(__AVX512F__)
+
+/// Sixteen floats that are calculated together, see simd.hpp.
+struct f32x16 {
+  static constexpr std::size_t width = 16;
+  static constexpr __mmask16 all = 0xffff;
+  __m512 v;
+
+  static f32x16 load(const float* p) { return {_mm512_loadu_ps(p)}; }
+  static f32x16 broadcast(float x) { return {_mm512_set1_ps(x)}; }
+  void store(float* p) const { _mm512_storeu_ps(p, v); }
+
+  friend f32x16 operator+(f32x16 a, f32x16 b) { return {_mm512_add_ps(a.v, b.v)}; }
+  friend f32x16 operator-(f32x16 a, f32x16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
+  friend f32x16 operator*(f32x16 a, f32x16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
+  friend f32x16 min(f32x16 a, f32x16 b) { return {_mm512_maskz_min_ps(all, a.v, b.v)}; }
+  friend f32x16 max(f32x16 a, f32x16 b) { return {_mm512_maskz_max_ps(all, a.v, b.v)}; }
+  friend unsigned less(f32x16 a, f32x16 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ); }
+};
+
+/// Eight doubles that are calculated together, see simd.hpp.
+///
+/// The masked forms of what works on all lanes: g++ 12 warns of the others.
+struct f64x8 {
+  static constexpr std::size_t width = 8;
+  static constexpr __mmask8 all = 0xff;
+  __m512d v;
+
+  static f64x8 load(const double* p) { return {_mm512_loadu_pd(p)}; }
+  static f64x8 convert(const float* p) { return {_mm512_maskz_cvtps_pd(all, _mm256_loadu_ps(p))}; }
+  static f64x8 broadcast(double x) { return {_mm512_set1_pd(x)}; }
+  void store(double* p) const { _mm512_storeu_pd(p, v); }
+
+  friend f64x8 operator+(f64x8 a, f64x8 b) { return {_mm512_add_pd(a.v, b.v)}; }
+  friend f64x8 operator-(f64x8 a, f64x8 b) { return {_mm512_sub_pd(a.v, b.v)}; }
+  friend f64x8 operator*(f64x8 a, f64x8 b) { return {_mm512_mul_pd(a.v, b.v)}; }
+  friend f64x8 operator/(f64x8 a, f64x8 b) { return {_mm512_div_pd(a.v, b.v)}; }
+  friend f64x8 min(f64x8 a, f64x8 b) { return {_mm512_maskz_min_pd(all, a.v, b.v)}; }
+  friend f64x8 max(f64x8 a, f64x8 b) { return {_mm512_maskz_max_pd(all, a.v, b.v)}; }
+  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+    return {_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ), y.v, x.v)};
+  }
+  friend f64x8 mantissa(f64x8 a) {
+    const __m512i fraction =
+        _mm512_and_epi64(_mm512_castpd_si512(a.v), _mm512_set1_epi64(detail::fraction_bits));
+    return {_mm512_castsi512_pd(_mm512_or_epi64(fraction, _mm512_castpd_si512(_mm512_set1_pd(1))))};
+  }
+  friend f64x8 exponent(f64x8 a) {
+    const __m512i shifted = _mm512_maskz_srli_epi64(all, _mm512_castpd_si512(a.v), 52);
+    const __m512i offset = _mm512_castpd_si512(_mm512_set1_pd(0x1p52));
+    return {_mm512_sub_pd(_mm512_castsi512_pd(_mm512_or_epi64(shifted, offset)),
+                          _mm512_set1_pd(detail::exponent_offset))};
+  }
+};
+
+#else
+
+/// Sixteen floats that are calculated together, see simd.hpp.
+struct f32x16 {
+  static constexpr std::size_t width = 16;
+  f32x8 lo, hi;
+
+  static f32x16 load(const float* p) { return {f32x8::load(p), f32x8::load(p + 8)}; }
+  static f32x16 broadcast(float x) { return {f32x8::broadcast(x), f32x8::broadcast(x)}; }
+  void store(float* p) const {
+    lo.store(p);
+    hi.store(p + 8);
+  }
+
+  friend f32x16 operator+(f32x16 a, f32x16 b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend f32x16 operator-(f32x16 a, f32x16 b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend f32x16 operator*(f32x16 a, f32x16 b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend f32x16 min(f32x16 a, f32x16 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend f32x16 max(f32x16 a, f32x16 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend unsigned less(f32x16 a, f32x16 b) { return less(a.lo, b.lo) | less(a.hi, b.hi) << 8; }
+};
+
+/// Eight doubles that are calculated together, see simd.hpp.
+struct f64x8 {
+  static constexpr std::size_t width = 8;
+  f64x4 lo, hi;
+
+  static f64x8 load(const double* p) { return {f64x4::load(p), f64x4::load(p + 4)}; }
+  static f64x8 convert(const float* p) { return {f64x4::convert(p), f64x4::convert(p + 4)}; }
+  static f64x8 broadcast(double x) { return {f64x4::broadcast(x), f64x4::broadcast(x)}; }
+  void store(double* p) const {
+    lo.store(p);
+    hi.store(p + 4);
+  }
+
+  friend f64x8 operator+(f64x8 a, f64x8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend f64x8 operator-(f64x8 a, f64x8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend f64x8 operator*(f64x8 a, f64x8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend f64x8 operator/(f64x8 a, f64x8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend f64x8 min(f64x8 a, f64x8 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend f64x8 max(f64x8 a, f64x8 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+    return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
+  }
+  friend f64x8 mantissa(f64x8 a) { return {mantissa(a.lo), mantissa(a.hi)}; }
+  friend f64x8 exponent(f64x8 a) { return {exponent(a.lo), exponent(a.hi)}; }
+};
+
+#endif
+
+/// Sum of the lanes in a fixed order.
+inline double sum(f64x8 a) {
+  double lane[8];
+  a.store(lane);
+  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+}
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
+
 // aib/search/nearest_packet.hpp
 
 namespace aib::search {
@@ -2891,19 +3022,17 @@ inline namespace AIB_ISA {
 
 /// Sixteen queries, a lane each, and the squared distances known so far.
 struct packet {
-  static constexpr std::size_t size = 16;
-  f32x8 axis[3][2];
-  f32x8 best[2];
+  static constexpr std::size_t size = f32x16::width;
+  f32x16 axis[3];
+  f32x16 best;
 
   /// Takes the sixteen points of a block into account.
   void visit(const point_block& block) {
     for (std::size_t j = 0; j < point_block::size; ++j) {
-      const f32x8 x = f32x8::broadcast(block.axis[0][j]);
-      const f32x8 y = f32x8::broadcast(block.axis[1][j]);
-      const f32x8 z = f32x8::broadcast(block.axis[2][j]);
-      for (int v = 0; v < 2; ++v) {
-        best[v] = min(best[v], squared_length(axis[0][v] - x, axis[1][v] - y, axis[2][v] - z));
-      }
+      const f32x16 x = f32x16::broadcast(block.axis[0][j]);
+      const f32x16 y = f32x16::broadcast(block.axis[1][j]);
+      const f32x16 z = f32x16::broadcast(block.axis[2][j]);
+      best = min(best, squared_length(axis[0] - x, axis[1] - y, axis[2] - z));
     }
   }
 };
@@ -2994,17 +3123,15 @@ inline void super_packet::load(std::span<const point_block> queries) {
 }
 
 inline packet super_packet::load_packet(std::size_t p) const {
+  const std::size_t first = p * packet::size;
   packet q;
-  for (std::size_t v = 0; v < 2; ++v) {
-    const std::size_t lane = p * packet::size + 8 * v;
-    for (int k = 0; k < 3; ++k) q.axis[k][v] = f32x8::load(axis_[k] + lane);
-    q.best[v] = f32x8::load(best_ + lane);
-  }
+  for (int k = 0; k < 3; ++k) q.axis[k] = f32x16::load(axis_[k] + first);
+  q.best = f32x16::load(best_ + first);
   return q;
 }
 
 inline void super_packet::store_best(std::size_t p, const packet& q) {
-  for (std::size_t v = 0; v < 2; ++v) q.best[v].store(best_ + p * packet::size + 8 * v);
+  q.best.store(best_ + p * packet::size);
 }
 
 /// Each packet looks at the block that the curve leads it to and at its two neighbours.
@@ -3120,24 +3247,21 @@ inline void super_packet::pad_candidates() {
 inline bool super_packet::may_improve(const packet& q,
                                       const float (&low)[3],
                                       const float (&high)[3]) {
-  unsigned any = 0;
-  for (int v = 0; v < 2; ++v) {
-    f32x8 gap[3];
-    for (int k = 0; k < 3; ++k) {
-      const f32x8 before = f32x8::broadcast(low[k]) - q.axis[k][v];
-      const f32x8 behind = q.axis[k][v] - f32x8::broadcast(high[k]);
-      gap[k] = max(max(before, behind), f32x8::broadcast(0));
-    }
-    any |= less(squared_length(gap[0], gap[1], gap[2]), q.best[v]);
+  f32x16 gap[3];
+  for (int k = 0; k < 3; ++k) {
+    const f32x16 before = f32x16::broadcast(low[k]) - q.axis[k];
+    const f32x16 behind = q.axis[k] - f32x16::broadcast(high[k]);
+    gap[k] = max(max(before, behind), f32x16::broadcast(0));
   }
-  return any != 0;
+  return less(squared_length(gap[0], gap[1], gap[2]), q.best) != 0;
 }
 
 inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
   const std::size_t first = p * packet::size;
   const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
   packet q = load_packet(p);
-  const f32x8 worst = f32x8::broadcast(highest(max(q.best[0], q.best[1])));
+  const f32x8 worst =
+      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
   for (std::size_t i = 0; i < candidates_; i += 8) {
     f32x8 gap[3];
     for (int k = 0; k < 3; ++k) {
@@ -3976,8 +4100,9 @@ template <class T>
 class image {
  public:
   image() = default;
+  /// Throws argument_error where there are not so many addresses.
   image(std::size_t width, std::size_t height, T value = {})
-      : width_(width), height_(height), pixels_(width * height, value) {}
+      : width_(width), height_(height), pixels_(area(width, height), value) {}
 
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
@@ -4004,6 +4129,14 @@ class image {
   friend bool operator==(const image&, const image&) = default;
 
  private:
+  static std::size_t area(std::size_t width, std::size_t height) {
+    if (height != 0 && width > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(T) / height) {
+      throw argument_error(
+          message("an image of ", width, " x ", height, " pixels is larger than memory can be"));
+    }
+    return width * height;
+  }
+
   std::size_t width_ = 0;
   std::size_t height_ = 0;
   std::vector<T> pixels_;
@@ -4989,90 +5122,6 @@ namespace aib::cloud {
 }
 
 }  // namespace aib::cloud
-
-// aib/core/simd_wide.hpp
-
-namespace aib {
-
-inline namespace AIB_ISA {
-
-#if !defined(AIB_PLAIN) && defined(__AVX512F__)
-
-/// Eight doubles that are calculated together, see simd.hpp.
-///
-/// The masked forms of what works on all lanes: g++ 12 warns of the others.
-struct f64x8 {
-  static constexpr std::size_t width = 8;
-  static constexpr __mmask8 all = 0xff;
-  __m512d v;
-
-  static f64x8 load(const double* p) { return {_mm512_loadu_pd(p)}; }
-  static f64x8 convert(const float* p) { return {_mm512_maskz_cvtps_pd(all, _mm256_loadu_ps(p))}; }
-  static f64x8 broadcast(double x) { return {_mm512_set1_pd(x)}; }
-  void store(double* p) const { _mm512_storeu_pd(p, v); }
-
-  friend f64x8 operator+(f64x8 a, f64x8 b) { return {_mm512_add_pd(a.v, b.v)}; }
-  friend f64x8 operator-(f64x8 a, f64x8 b) { return {_mm512_sub_pd(a.v, b.v)}; }
-  friend f64x8 operator*(f64x8 a, f64x8 b) { return {_mm512_mul_pd(a.v, b.v)}; }
-  friend f64x8 operator/(f64x8 a, f64x8 b) { return {_mm512_div_pd(a.v, b.v)}; }
-  friend f64x8 min(f64x8 a, f64x8 b) { return {_mm512_maskz_min_pd(all, a.v, b.v)}; }
-  friend f64x8 max(f64x8 a, f64x8 b) { return {_mm512_maskz_max_pd(all, a.v, b.v)}; }
-  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
-    return {_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ), y.v, x.v)};
-  }
-  friend f64x8 mantissa(f64x8 a) {
-    const __m512i fraction =
-        _mm512_and_epi64(_mm512_castpd_si512(a.v), _mm512_set1_epi64(detail::fraction_bits));
-    return {_mm512_castsi512_pd(_mm512_or_epi64(fraction, _mm512_castpd_si512(_mm512_set1_pd(1))))};
-  }
-  friend f64x8 exponent(f64x8 a) {
-    const __m512i shifted = _mm512_maskz_srli_epi64(all, _mm512_castpd_si512(a.v), 52);
-    const __m512i offset = _mm512_castpd_si512(_mm512_set1_pd(0x1p52));
-    return {_mm512_sub_pd(_mm512_castsi512_pd(_mm512_or_epi64(shifted, offset)),
-                          _mm512_set1_pd(detail::exponent_offset))};
-  }
-};
-
-#else
-
-/// Eight doubles that are calculated together, see simd.hpp.
-struct f64x8 {
-  static constexpr std::size_t width = 8;
-  f64x4 lo, hi;
-
-  static f64x8 load(const double* p) { return {f64x4::load(p), f64x4::load(p + 4)}; }
-  static f64x8 convert(const float* p) { return {f64x4::convert(p), f64x4::convert(p + 4)}; }
-  static f64x8 broadcast(double x) { return {f64x4::broadcast(x), f64x4::broadcast(x)}; }
-  void store(double* p) const {
-    lo.store(p);
-    hi.store(p + 4);
-  }
-
-  friend f64x8 operator+(f64x8 a, f64x8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend f64x8 operator-(f64x8 a, f64x8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend f64x8 operator*(f64x8 a, f64x8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend f64x8 operator/(f64x8 a, f64x8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
-  friend f64x8 min(f64x8 a, f64x8 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend f64x8 max(f64x8 a, f64x8 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
-    return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
-  }
-  friend f64x8 mantissa(f64x8 a) { return {mantissa(a.lo), mantissa(a.hi)}; }
-  friend f64x8 exponent(f64x8 a) { return {exponent(a.lo), exponent(a.hi)}; }
-};
-
-#endif
-
-/// Sum of the lanes in a fixed order.
-inline double sum(f64x8 a) {
-  double lane[8];
-  a.store(lane);
-  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
-}
-
-}  // namespace AIB_ISA
-
-}  // namespace aib
 
 // aib/depth/crop.hpp
 
@@ -8124,6 +8173,16 @@ class input_file {
   std::uint64_t size_ = 0;
 };
 
+/// Whether there is a folder of this name, or anything at all; not where one may not look.
+[[nodiscard]] inline bool is_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
+}
+[[nodiscard]] inline bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
 /// The whole content of a file.
 /// Throws io_error where it cannot be read, format_error where it is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path,
@@ -8131,7 +8190,9 @@ std::string read_file(const std::filesystem::path& path,
 
 /// Writes a file under a temporary name beside it; `commit` makes it the file in one step. Where
 /// commit is never reached, or fails, the old file stays as it was and the temporary one is
-/// removed.
+/// removed. Behind a link it is the link's target that is replaced. A device or pipe (and
+/// /dev/stdout, whatever that is) is written as it is. Throws io_error where the path is a folder,
+/// or a file that may not be written.
 class output_file {
  public:
   explicit output_file(std::filesystem::path path);
@@ -8145,17 +8206,30 @@ class output_file {
   void commit();
 
  private:
+  void open_beside();
   [[noreturn]] void fail(const char* doing) const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_;     ///< behind links
+  std::filesystem::path temporary_;  ///< empty: the target itself is written
   std::FILE* file_ = nullptr;
 };
 
 /// Writes a whole file in one step, see output_file.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
+namespace detail {
+
+/// A zero byte would end the name for the system, which would find another file.
+inline void check_name(const std::filesystem::path& path) {
+  if (path.native().find('\0') != std::string::npos)
+    throw io_error(path, "a name without zero bytes expected");
+}
+
+}  // namespace detail
+
 inline input_file::input_file(std::filesystem::path path) : path_(std::move(path)) {
+  detail::check_name(path_);
   // O_NONBLOCK: opening a pipe without a writer must not hang.
   const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) throw io_error(path_, message("cannot open: ", std::strerror(errno)));
@@ -8196,8 +8270,28 @@ inline std::string read_file(const std::filesystem::path& path, std::uint64_t ma
   return content;
 }
 
-inline output_file::output_file(std::filesystem::path path) : path_(std::move(path)) {
-  std::string name = path_.string() + ".XXXXXX";
+inline output_file::output_file(std::filesystem::path path)
+    : path_(std::move(path)), target_(path_) {
+  detail::check_name(path_);
+  struct stat status = {};
+  if (::stat(path_.c_str(), &status) != 0) {
+    open_beside();
+    return;
+  }
+  if (S_ISDIR(status.st_mode)) throw io_error(path_, "a file expected, found a folder");
+  if (::access(path_.c_str(), W_OK) != 0) fail("write");
+  if (!S_ISREG(status.st_mode) || path_.string().starts_with("/dev/")) {
+    file_ = std::fopen(path_.c_str(), "abe");
+    if (!file_) fail("write");
+    return;
+  }
+  std::error_code ignored;
+  if (auto real = std::filesystem::canonical(path_, ignored); !ignored) target_ = std::move(real);
+  open_beside();
+}
+
+inline void output_file::open_beside() {
+  std::string name = target_.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0) fail("create");
   temporary_ = name;
@@ -8222,9 +8316,11 @@ inline void output_file::write(const void* data, std::size_t n) {
 }
 
 inline void output_file::commit() {
-  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("write");
+  const bool is_direct = temporary_.empty();
+  if (std::fflush(file_) != 0 || (!is_direct && ::fsync(::fileno(file_)) != 0)) fail("write");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("write");
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
+  if (is_direct) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace");
   temporary_.clear();
 }
 
@@ -13202,11 +13298,11 @@ namespace aib::io {
 /// Source: Depth-Anything-3, da3_streaming.
 [[nodiscard]] inline posed_images read_da3_streaming(const std::filesystem::path& path,
                                                      const pose_frame& frame = {}) {
-  const bool folder = std::filesystem::is_directory(path);
+  const bool folder = is_folder(path);
   const std::filesystem::path poses = folder ? path / "camera_poses.txt" : path;
   const std::filesystem::path intrinsics = poses.parent_path() / "intrinsic.txt";
   posed_images images{read_matrix_lines(poses, frame), {}};
-  if (!std::filesystem::exists(intrinsics)) return images;
+  if (!is_there(intrinsics)) return images;
   images.cameras = read_intrinsic_lines(intrinsics);
   if (images.cameras.size() != images.trajectory.size()) {
     throw format_error(intrinsics, message("a line for each of the ", images.trajectory.size(),
@@ -14813,8 +14909,12 @@ raster::color_image read_png_color(const std::filesystem::path& path);
 /// Any PNG as 8-bit red, green, blue, alpha.
 raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path);
 
-/// Writes gray (8 or 16 bits), rgb or rgba pixels, whichever the type is. Throws argument_error for
-/// an empty image, io_error where the file cannot be written.
+/// Any PNG as 16-bit red, green, blue: the stored numbers of a file of 16 bits. Transparency is
+/// dropped.
+raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path);
+
+/// Writes gray, rgb or rgba pixels of 8 or 16 bits, whichever the type is. Throws argument_error
+/// for an empty image, io_error where the file cannot be written.
 template <class Pixel>
 void write_png(const std::filesystem::path& path, raster::view<const Pixel> image);
 
@@ -14902,6 +15002,15 @@ inline raster::image<std::uint16_t> unpack_samples(const std::vector<std::uint8_
   return image;
 }
 
+/// Bits of a channel.
+template <class Pixel>
+constexpr std::uint8_t png_bits() {
+  if constexpr (std::is_integral_v<Pixel>)
+    return 8 * sizeof(Pixel);
+  else
+    return 8 * sizeof(typename Pixel::value_type);
+}
+
 template <class Pixel>
 constexpr int png_color_type() {
   if constexpr (std::is_integral_v<Pixel>)
@@ -14947,6 +15056,18 @@ inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::files
   return image;
 }
 
+inline raster::image<std::array<std::uint16_t, 3>> read_png_color16(
+    const std::filesystem::path& path) {
+  detail::png_decoder decoder(path);
+  const png_header header = decoder.header();
+  std::vector<std::array<std::uint16_t, 4>> pixels(header.width * header.height);
+  decoder.decode(SPNG_FMT_RGBA16, pixels.data(), 8 * pixels.size());
+  raster::image<std::array<std::uint16_t, 3>> image(header.width, header.height);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    image.data()[i] = {pixels[i][0], pixels[i][1], pixels[i][2]};
+  return image;
+}
+
 template <class Pixel>
 void write_png(const std::filesystem::path& path, raster::view<const Pixel> image) {
   if (image.empty()) throw argument_error("io::write_png: an empty image");
@@ -14959,7 +15080,7 @@ void write_png(const std::filesystem::path& path, raster::view<const Pixel> imag
   spng_ihdr ihdr = {};
   ihdr.width = static_cast<std::uint32_t>(image.width);
   ihdr.height = static_cast<std::uint32_t>(image.height);
-  ihdr.bit_depth = std::is_same_v<Pixel, std::uint16_t> ? 16 : 8;
+  ihdr.bit_depth = detail::png_bits<Pixel>();
   ihdr.color_type = static_cast<std::uint8_t>(detail::png_color_type<Pixel>());
   std::size_t n = 0;
   int code = context ? 0 : 1;
@@ -16185,9 +16306,9 @@ inline std::filesystem::path folder_of_npz(const std::filesystem::path& folder) 
 
 inline std::optional<pose_format> format_of_folder(const std::filesystem::path& folder) {
   if (!find_colmap_models(folder).empty()) return pose_format::colmap;
-  if (std::filesystem::exists(folder / "camera_poses.txt")) return pose_format::da3;
-  if (std::filesystem::exists(folder / "transforms.json")) return pose_format::transforms;
-  if (std::filesystem::exists(folder / "reconstruction.json")) return pose_format::opensfm;
+  if (is_there(folder / "camera_poses.txt")) return pose_format::da3;
+  if (is_there(folder / "transforms.json")) return pose_format::transforms;
+  if (is_there(folder / "reconstruction.json")) return pose_format::opensfm;
   if (!folder_of_npz(folder).empty()) return pose_format::npz;
   return std::nullopt;
 }
@@ -16267,7 +16388,7 @@ inline std::optional<pose_format> format_of_extension(const std::filesystem::pat
 }  // namespace detail
 
 inline pose_format detect_pose_format(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) {
+  if (is_folder(path)) {
     if (const auto format = detail::format_of_folder(path)) return *format;
     throw format_error(path,
                        "a COLMAP model (cameras, images), camera_poses.txt, transforms.json, "
@@ -17061,9 +17182,11 @@ inline posed_images read_pose_npz(const std::filesystem::path& path,
 inline posed_images read_pose_npz_folder(const std::filesystem::path& folder,
                                          const pose_npz_options& options) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".npz") files.push_back(entry.path());
   }
+  if (error) throw io_error(folder, message("cannot list: ", error.message()));
   std::sort(files.begin(), files.end());
   posed_images all;
   for (const std::filesystem::path& file : files) {
@@ -17342,7 +17465,7 @@ namespace detail {
 
 /// The file that is meant where a folder is given.
 inline std::filesystem::path file_in(const std::filesystem::path& path, const char* name) {
-  return std::filesystem::is_directory(path) ? path / name : path;
+  return is_folder(path) ? path / name : path;
 }
 
 /// Reads one file in its format with the options that fit it.
@@ -17391,7 +17514,7 @@ class pose_reader {
   }
 
   posed_images from_colmap() const {
-    const bool folder = std::filesystem::is_directory(path_);
+    const bool folder = is_folder(path_);
     const colmap_model model =
         read_colmap(folder ? path_ : path_.parent_path(), colmap_content::cameras_and_images);
     posed_images images{model.trajectory, {}};
@@ -17412,7 +17535,7 @@ class pose_reader {
 #ifdef AIB_WITH_NPZ
   posed_images from_npz() const {
     const pose_npz_options npz{options_.key, options_.convention, frame().axes};
-    if (!std::filesystem::is_directory(path_)) return read_pose_npz(path_, npz);
+    if (!is_folder(path_)) return read_pose_npz(path_, npz);
     return read_pose_npz_folder(folder_of_npz(path_), npz);
   }
 #else
@@ -17562,6 +17685,226 @@ inline void write_trajectory(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/math/geodesy.hpp
+
+namespace aib::math {
+
+/// A place on the WGS84 ellipsoid.
+struct geodetic {
+  double latitude = 0;   ///< radians, north
+  double longitude = 0;  ///< radians, east
+  double altitude = 0;   ///< m above the ellipsoid
+};
+
+/// Axes and origin of WGS84. Source: NIMA TR8350.2, 2000.
+struct wgs84 {
+  static constexpr double major = 6378137.0;
+  static constexpr double flattening = 1 / 298.257223563;
+  static constexpr double eccentricity2 = flattening * (2 - flattening);
+};
+
+/// Earth-centred coordinates in metres.
+[[nodiscard]] inline Eigen::Vector3d earth_from(const geodetic& g) {
+  const double sine = std::sin(g.latitude), cosine = std::cos(g.latitude);
+  const double n = wgs84::major / std::sqrt(1 - wgs84::eccentricity2 * sine * sine);
+  return {(n + g.altitude) * cosine * std::cos(g.longitude),
+          (n + g.altitude) * cosine * std::sin(g.longitude),
+          (n * (1 - wgs84::eccentricity2) + g.altitude) * sine};
+}
+
+/// The place of earth-centred coordinates, to a nanometre within 100 km of the surface.
+[[nodiscard]] inline geodetic geodetic_from(const Eigen::Vector3d& p) {
+  constexpr double e2 = wgs84::eccentricity2;
+  const double across = std::hypot(p.x(), p.y());
+  double latitude = std::atan2(p.z(), across * (1 - e2)), n = wgs84::major;
+  for (int round = 0; round < 8; ++round) {
+    const double sine = std::sin(latitude);
+    n = wgs84::major / std::sqrt(1 - e2 * sine * sine);
+    latitude = std::atan2(p.z() + e2 * n * sine, across);
+  }
+  const double sine = std::sin(latitude), cosine = std::cos(latitude);
+  const double altitude = across * cosine + p.z() * sine - wgs84::major * wgs84::major / n;
+  return {latitude, std::atan2(p.y(), p.x()), altitude};
+}
+
+/// The place of a point in the tangent frame of an origin: x east, y north, z up, metres.
+[[nodiscard]] inline geodetic geodetic_from_local(const Eigen::Vector3d& east_north_up,
+                                                  const geodetic& origin) {
+  const double sin_lat = std::sin(origin.latitude), cos_lat = std::cos(origin.latitude);
+  const double sin_lon = std::sin(origin.longitude), cos_lon = std::cos(origin.longitude);
+  Eigen::Matrix3d earth_from_local;
+  earth_from_local << -sin_lon, -sin_lat * cos_lon, cos_lat * cos_lon,  //
+      cos_lon, -sin_lat * sin_lon, cos_lat * sin_lon,                   //
+      0, cos_lat, sin_lat;
+  return geodetic_from(earth_from(origin) + earth_from_local * east_north_up);
+}
+
+}  // namespace aib::math
+
+// aib/io/waypoints.hpp
+
+namespace aib::io {
+
+struct waypoint_options {
+  math::geodetic origin = {};  ///< of the poses: x east, y north, z up
+  double speed = 2;            ///< m/s
+};
+
+/// Where a drone flies and how its camera is turned, angles in degrees.
+struct waypoint {
+  std::string name;
+  Eigen::Vector3d local;  ///< east, north, up, m
+  double latitude, longitude;
+  double altitude;  ///< m above the ellipsoid
+  double heading;   ///< of the view, clockwise from north, 0..360
+  double pitch;     ///< of the view, negative looks down
+};
+
+/// Waypoints of the registered poses of a trajectory.
+[[nodiscard]] std::vector<waypoint> waypoints(const pose::trajectory& t,
+                                              const waypoint_options& options);
+
+/// Writes waypoints: .csv (a line each), .kml (a line and its places, for a look at them on a map)
+/// or .plan (QGroundControl: take-off, and for each pose gimbal, waypoint and picture; heights
+/// count from the origin).
+///
+/// Throws argument_error for another extension, an origin that is no place, or where no pose is
+/// registered.
+void write_waypoints(const std::filesystem::path& path,
+                     const pose::trajectory& t,
+                     const waypoint_options& options);
+
+namespace detail {
+
+inline std::string csv_of(const std::vector<waypoint>& points) {
+  std::string out = "name,latitude,longitude,altitude,east,north,up,heading_deg,pitch_deg\n";
+  for (const waypoint& w : points) {
+    out += message(w.name, ",", w.latitude, ",", w.longitude, ",", w.altitude, ",", w.local.x(),
+                   ",", w.local.y(), ",", w.local.z(), ",", w.heading, ",", w.pitch, "\n");
+  }
+  return out;
+}
+
+inline std::string xml_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+inline std::string kml_of(const std::vector<waypoint>& points) {
+  const auto place = [](const waypoint& w) {
+    return message(w.longitude, ",", w.latitude, ",", w.altitude);
+  };
+  std::string out =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
+      "<Placemark><name>flight</name><LineString><altitudeMode>absolute</altitudeMode>"
+      "<coordinates>\n";
+  for (const waypoint& w : points) out += place(w) + "\n";
+  out += "</coordinates></LineString></Placemark>\n";
+  for (const waypoint& w : points) {
+    out += message("<Placemark><name>", xml_text(w.name), "</name><Camera><longitude>", w.longitude,
+                   "</longitude><latitude>", w.latitude, "</latitude><altitude>", w.altitude,
+                   "</altitude><heading>", w.heading, "</heading><tilt>", 90 + w.pitch,
+                   "</tilt><altitudeMode>absolute</altitudeMode></Camera><Point><altitudeMode>"
+                   "absolute</altitudeMode><coordinates>",
+                   place(w), "</coordinates></Point></Placemark>\n");
+  }
+  return out + "</Document>\n</kml>\n";
+}
+
+/// A mission in the words of MAVLink's commands.
+/// Source: QGroundControl developer guide, "Plan File Format"; MAVLink common message set.
+class qgc_plan {
+ public:
+  explicit qgc_plan(const waypoint_options& options) : options_(options) {}
+
+  std::string text(const std::vector<waypoint>& points) {
+    constexpr int take_off = 22, go_to = 16, turn_gimbal = 205, take_picture = 2000;
+    const std::string at = place(points.front());
+    add(take_off, 3, message("0, 0, 0, null, ", at));
+    for (const waypoint& w : points) {
+      add(turn_gimbal, 2, message(w.pitch, ", 0, 0, 0, 0, 0, 2"));
+      add(go_to, 3, message("0, 0, 0, ", w.heading, ", ", place(w)));
+      add(take_picture, 2, "0, 0, 1, 0, 0, 0, 0");
+    }
+    const auto& [latitude, longitude, altitude] = options_.origin;
+    return message(
+        "{\n\"fileType\": \"Plan\", \"version\": 1, \"groundStation\": \"QGroundControl\",\n",
+        "\"geoFence\": {\"circles\": [], \"polygons\": [], \"version\": 2},\n",
+        "\"rallyPoints\": {\"points\": [], \"version\": 2},\n",
+        "\"mission\": {\n\"version\": 2, \"firmwareType\": 12, \"vehicleType\": 2, ",
+        "\"cruiseSpeed\": ", options_.speed, ", \"hoverSpeed\": ", options_.speed,
+        ",\n\"plannedHomePosition\": [", math::degrees(latitude), ", ", math::degrees(longitude),
+        ", ", altitude, "],\n\"items\": [\n", items_, "\n]}}\n");
+  }
+
+ private:
+  static std::string place(const waypoint& w) {
+    return message(w.latitude, ", ", w.longitude, ", ", w.local.z());
+  }
+  void add(int command, int frame, const std::string& params) {
+    ++n_;
+    if (n_ > 1) items_ += ",\n";
+    items_ +=
+        message("{\"type\": \"SimpleItem\", \"autoContinue\": true, \"command\": ", command,
+                ", \"doJumpId\": ", n_, ", \"frame\": ", frame, ", \"params\": [", params, "]}");
+  }
+
+  const waypoint_options& options_;
+  std::string items_;
+  int n_ = 0;
+};
+
+}  // namespace detail
+
+inline std::vector<waypoint> waypoints(const pose::trajectory& t, const waypoint_options& options) {
+  std::vector<waypoint> points;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const math::rigid3& pose = t.world_from_camera[i];
+    if (!pose.is_finite()) continue;
+    const math::geodetic g = math::geodetic_from_local(pose.translation, options.origin);
+    const Eigen::Vector3d view = pose.rotation.col(2);
+    const double heading = math::degrees(std::atan2(view.x(), view.y()));
+    points.push_back({t.names.empty() ? std::to_string(i) : t.names[i], pose.translation,
+                      math::degrees(g.latitude), math::degrees(g.longitude), g.altitude,
+                      heading < 0 ? heading + 360 : heading,
+                      math::degrees(std::asin(std::clamp(view.z(), -1.0, 1.0)))});
+  }
+  return points;
+}
+
+inline void write_waypoints(const std::filesystem::path& path,
+                            const pose::trajectory& t,
+                            const waypoint_options& options) {
+  const math::geodetic& o = options.origin;
+  if (!(std::abs(o.latitude) <= math::radians(90)) ||
+      !(std::abs(o.longitude) <= math::radians(360)) || !std::isfinite(o.altitude) ||
+      !(options.speed > 0))
+    throw argument_error(
+        "io::write_waypoints: a latitude of -90..90, a longitude of -360..360, an "
+        "altitude and a speed above 0 expected");
+  const std::vector<waypoint> points = waypoints(t, options);
+  if (points.empty()) throw argument_error("io::write_waypoints: no pose is registered");
+  const std::string extension = extension_of(path);
+  if (extension == ".csv") return write_file(path, detail::csv_of(points));
+  if (extension == ".kml") return write_file(path, detail::kml_of(points));
+  if (extension == ".plan") return write_file(path, detail::qgc_plan(options).text(points));
+  throw argument_error(message("io::write_waypoints: the extension .csv, .kml or .plan expected, ",
+                               "found \"", path.extension().string(), "\""));
+}
+
+}  // namespace aib::io
+
 // aib/io/npz_write.hpp
 
 #if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
@@ -17689,6 +18032,52 @@ inline f64x4 angle_of(f64x4 x, f64x4 y) {
 }
 
 }  // namespace AIB_ISA
+
+}  // namespace aib::math
+
+// aib/math/view.hpp
+
+namespace aib::math {
+
+/// A camera where it stands.
+struct view {
+  math::camera camera;
+  rigid3 world_from_camera;
+};
+
+/// Whether a point lies in the image of a view, whatever may be before it. A pose that is not
+/// finite sees nothing.
+[[nodiscard]] inline bool is_in_image(const view& v, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d offset = point - v.world_from_camera.translation;
+  const auto pixel = project(v.camera, v.world_from_camera.rotation.transpose() * offset);
+  return pixel && pixel->x() >= 0 && pixel->y() >= 0 &&
+         pixel->x() <= static_cast<double>(v.camera.width) &&
+         pixel->y() <= static_cast<double>(v.camera.height);
+}
+
+/// A cone around the image of a view: what lies outside of it need not be projected.
+class view_cone {
+ public:
+  explicit view_cone(const view& v)
+      : centre_(v.world_from_camera.translation), axis_(v.world_from_camera.rotation.col(2)) {
+    for (const double x : {0.0, 0.5, 1.0}) {
+      for (const double y : {0.0, 0.5, 1.0}) {
+        const auto ray = unproject(v.camera, {x * static_cast<double>(v.camera.width),
+                                              y * static_cast<double>(v.camera.height)});
+        cosine_ = std::min(cosine_, ray ? ray->z() - 0.02 : -1);
+      }
+    }
+  }
+
+  [[nodiscard]] bool may_contain(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d offset = point - centre_;
+    return axis_.dot(offset) >= cosine_ * offset.norm();
+  }
+
+ private:
+  Eigen::Vector3d centre_, axis_;
+  double cosine_ = 1;
+};
 
 }  // namespace aib::math
 
@@ -18253,6 +18642,1175 @@ inline namespace AIB_ISA {
     }
   });
   return cloud::offsets(std::move(found.distance));
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::mesh
+
+// aib/search/ray_fan.hpp
+
+namespace aib::search {
+
+/// Where rays come from and how their own axes lie: rows are right, down, forward, of unit length.
+struct ray_frame {
+  Eigen::Vector3d origin;
+  Eigen::Matrix3d axes;
+
+  /// Axes about a direction of sight, which is not zero.
+  static ray_frame towards(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    const Eigen::Vector3d forward = direction.normalized();
+    Eigen::Index least = 0;
+    forward.cwiseAbs().minCoeff(&least);
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::Unit(least)).normalized();
+    ray_frame frame{origin, {}};
+    frame.axes.row(0) = right;
+    frame.axes.row(1) = forward.cross(right);
+    frame.axes.row(2) = forward;
+    return frame;
+  }
+};
+
+/// Up to 64 rays from one point in eight groups of eight. A ray is (slope[0], slope[1], 1) in a
+/// ray_frame. The fan holds for every place and attitude of the frame.
+struct alignas(32) ray_fan {
+  static constexpr std::size_t groups = 8;
+  static constexpr std::size_t lanes = 64;
+
+  float slope[2][lanes];
+  /// Limits of the slopes of each group and of all, widened for rounding. A group without rays has
+  /// empty limits.
+  float group_low[2][groups], group_high[2][groups];
+  float low[2], high[2];
+  bool used[lanes];  ///< whether there is a ray
+
+  /// slopes   64; NaN where there is no ray
+  static ray_fan of(std::span<const Eigen::Vector2d, lanes> slopes);
+  [[nodiscard]] bool empty() const { return !(low[0] <= high[0]); }
+};
+
+/// Boxes and triangles are placed in floats: what misses a fan by less than this slope is tried.
+inline constexpr float slope_margin = 2e-6f;
+
+inline ray_fan ray_fan::of(std::span<const Eigen::Vector2d, lanes> slopes) {
+  ray_fan fan;
+  for (int a = 0; a < 2; ++a) {
+    fan.low[a] = HUGE_VALF;
+    fan.high[a] = -HUGE_VALF;
+    for (std::size_t g = 0; g < groups; ++g) {
+      float low = HUGE_VALF, high = -HUGE_VALF;
+      for (std::size_t i = 8 * g; i < 8 * g + 8; ++i) {
+        fan.used[i] = slopes[i].allFinite();
+        fan.slope[a][i] = fan.used[i] ? static_cast<float>(slopes[i][a]) : 0;
+        if (!fan.used[i]) continue;
+        low = std::min(low, fan.slope[a][i]);
+        high = std::max(high, fan.slope[a][i]);
+      }
+      fan.group_low[a][g] = low - slope_margin;
+      fan.group_high[a][g] = high + slope_margin;
+      fan.low[a] = std::min(fan.low[a], fan.group_low[a][g]);
+      fan.high[a] = std::max(fan.high[a], fan.group_high[a][g]);
+    }
+  }
+  return fan;
+}
+
+}  // namespace aib::search
+
+// aib/search/ray_tree.hpp
+
+namespace aib::search {
+
+/// A box along the axes in floats. Empty until something is added.
+struct box3 {
+  float low[3] = {HUGE_VALF, HUGE_VALF, HUGE_VALF};
+  float high[3] = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+
+  void add(const box3& other) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
+  }
+  void add(const corners& t) {
+    for (const auto& corner : t.at) {
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], corner[a]);
+        high[a] = std::max(high[a], corner[a]);
+      }
+    }
+  }
+  /// Half of its surface, 0 where it is empty.
+  [[nodiscard]] float half_area() const {
+    const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+    return x >= 0 ? x * y + y * z + z * x : 0;
+  }
+  [[nodiscard]] float middle(int axis) const { return low[axis] / 2 + high[axis] / 2; }
+};
+
+inline namespace AIB_ISA {
+
+/// Boxes of up to eight children, coordinates side by side. The first `n` children are there.
+struct alignas(32) ray_node {
+  static constexpr std::size_t width = 8;
+  static constexpr std::uint32_t leaf = 1u << 31;
+
+  float low[3][width];
+  float high[3][width];
+  std::uint32_t child[width];  ///< a node, or `leaf` and a block
+  std::uint32_t n;
+};
+
+/// Up to eight triangles, coordinates side by side; lanes from `n` on repeat the first.
+struct alignas(32) triangle_block {
+  static constexpr std::size_t size = 8;
+
+  float corner[3][3][size];   ///< [corner][axis][lane]
+  std::uint32_t index[size];  ///< of the triangle, as given
+  std::uint32_t n;
+};
+
+/// Triangles under a tree of boxes that costs rays little: wide nodes split by the surface area
+/// heuristic. Triangles must be finite. The tree is the same for any number of threads.
+///
+/// Source: Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007 (bins);
+/// Wald, Benthin, Boulos, "Getting rid of packets", 2008 (wide nodes by the largest area).
+class ray_tree {
+ public:
+  /// Levels that a tree has at most: a stack of 8 entries a level never overflows.
+  static constexpr std::size_t max_levels = 64;
+
+  /// Throws undefined_error if there is no triangle.
+  explicit ray_tree(std::span<const corners> triangles,
+                    unsigned threads = 0,
+                    const control& control = {});
+
+  /// The root is node 0.
+  [[nodiscard]] std::span<const ray_node> nodes() const { return nodes_; }
+  [[nodiscard]] std::span<const triangle_block> blocks() const { return blocks_; }
+
+  /// Index, as given, of the triangle at a place (8 block + lane).
+  [[nodiscard]] std::uint32_t index(std::uint32_t place) const {
+    return blocks_[place / triangle_block::size].index[place % triangle_block::size];
+  }
+
+  /// Corners of the triangle at a place.
+  [[nodiscard]] std::array<Eigen::Vector3d, 3> triangle(std::uint32_t place) const;
+
+ private:
+  std::vector<ray_node> nodes_;
+  std::vector<triangle_block> blocks_;
+};
+
+namespace detail {
+
+/// Some triangles: a part of the builder's order.
+struct triangle_range {
+  std::uint32_t begin, end;
+  box3 box;
+
+  [[nodiscard]] std::uint32_t size() const { return end - begin; }
+};
+
+/// A part of a tree; children count from its own first node and block.
+struct ray_subtree {
+  std::vector<ray_node> nodes;
+  std::vector<triangle_block> blocks;
+};
+
+/// A child that is built later, as a tree of its own.
+struct postponed_child {
+  std::uint32_t node, slot;
+  std::size_t level;
+  triangle_range range;
+};
+
+/// Splits ranges of triangles and makes nodes of them.
+class ray_tree_builder {
+ public:
+  ray_tree_builder(std::span<const corners> triangles, unsigned threads, const control& control);
+
+  /// The upper part of the tree and, if it is large, the parts that were put off.
+  ray_subtree build(unsigned threads, const control& control);
+
+ private:
+  static constexpr int n_bins = 16;
+  /// Below this level ranges are halved, so that the depth is bounded.
+  static constexpr std::size_t halve_from = 24;
+
+  struct bin {
+    box3 box;
+    std::uint32_t n = 0;
+  };
+  struct cut {
+    int axis = -1;
+    int bin = 0;  ///< the first one on the right
+    float cost = HUGE_VALF;
+  };
+  struct bin_scale {
+    float low = 0, factor = 0;
+    [[nodiscard]] int of(float middle) const {
+      const float x = (middle - low) * factor;
+      if (!(x > 0)) return 0;
+      return x < n_bins - 1 ? static_cast<int>(x) : n_bins - 1;
+    }
+  };
+
+  std::uint32_t add_node(ray_subtree& tree,
+                         const triangle_range& range,
+                         std::size_t level,
+                         std::vector<postponed_child>* later);
+  std::uint32_t add_block(ray_subtree& tree, const triangle_range& range) const;
+  std::size_t split_eightfold(std::array<triangle_range, 8>& parts, std::size_t level);
+  std::pair<triangle_range, triangle_range> split(const triangle_range& range, std::size_t level);
+  std::pair<triangle_range, triangle_range> halve(const triangle_range& range) const;
+  [[nodiscard]] std::array<bin_scale, 3> scales_of(const triangle_range& range) const;
+  [[nodiscard]] cut best_cut(const triangle_range& range,
+                             const std::array<bin_scale, 3>& scales) const;
+  [[nodiscard]] box3 box_of(std::uint32_t begin, std::uint32_t end) const;
+
+  std::span<const corners> triangles_;
+  std::vector<box3> boxes_;
+  std::vector<std::uint32_t> order_;
+  std::uint32_t put_off_below_ = 0;
+};
+
+inline ray_tree_builder::ray_tree_builder(std::span<const corners> triangles,
+                                          unsigned threads,
+                                          const control& control)
+    : triangles_(triangles), boxes_(triangles.size()), order_(triangles.size()) {
+  for_each_chunk(triangles.size(), 1 << 16, threads, control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      boxes_[i].add(triangles[i]);
+      order_[i] = static_cast<std::uint32_t>(i);
+    }
+  });
+}
+
+inline box3 ray_tree_builder::box_of(std::uint32_t begin, std::uint32_t end) const {
+  box3 box;
+  for (std::uint32_t i = begin; i < end; ++i) box.add(boxes_[order_[i]]);
+  return box;
+}
+
+inline std::array<ray_tree_builder::bin_scale, 3> ray_tree_builder::scales_of(
+    const triangle_range& range) const {
+  box3 middles;
+  for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    const box3& box = boxes_[order_[i]];
+    for (int a = 0; a < 3; ++a) {
+      middles.low[a] = std::min(middles.low[a], box.middle(a));
+      middles.high[a] = std::max(middles.high[a], box.middle(a));
+    }
+  }
+  std::array<bin_scale, 3> scales;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float extent = middles.high[a] - middles.low[a];
+    const float factor = static_cast<float>(n_bins) / extent;
+    scales[a] = {middles.low[a], factor < HUGE_VALF ? factor : 0};
+  }
+  return scales;
+}
+
+inline ray_tree_builder::cut ray_tree_builder::best_cut(
+    const triangle_range& range, const std::array<bin_scale, 3>& scales) const {
+  std::array<std::array<bin, n_bins>, 3> bins;
+  for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    const box3& box = boxes_[order_[i]];
+    for (std::size_t a = 0; a < 3; ++a) {
+      bin& b = bins[a][static_cast<std::size_t>(scales[a].of(box.middle(static_cast<int>(a))))];
+      b.box.add(box);
+      ++b.n;
+    }
+  }
+  cut best;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& row = bins[static_cast<std::size_t>(axis)];
+    float cost_right[n_bins] = {};
+    bin right;
+    for (int k = n_bins - 1; k > 0; --k) {
+      right.box.add(row[static_cast<std::size_t>(k)].box);
+      right.n += row[static_cast<std::size_t>(k)].n;
+      cost_right[k] =
+          right.n == 0 ? HUGE_VALF : right.box.half_area() * static_cast<float>(right.n);
+    }
+    bin left;
+    for (int k = 1; k < n_bins; ++k) {
+      left.box.add(row[static_cast<std::size_t>(k - 1)].box);
+      left.n += row[static_cast<std::size_t>(k - 1)].n;
+      if (left.n == 0) continue;
+      const float cost = left.box.half_area() * static_cast<float>(left.n) + cost_right[k];
+      if (cost < best.cost) best = {axis, k, cost};
+    }
+  }
+  return best;
+}
+
+inline std::pair<triangle_range, triangle_range> ray_tree_builder::halve(
+    const triangle_range& range) const {
+  const std::uint32_t middle = range.begin + range.size() / 2;
+  return {{range.begin, middle, box_of(range.begin, middle)},
+          {middle, range.end, box_of(middle, range.end)}};
+}
+
+inline std::pair<triangle_range, triangle_range> ray_tree_builder::split(
+    const triangle_range& range, std::size_t level) {
+  if (level >= halve_from) return halve(range);
+  const auto scales = scales_of(range);
+  const cut best = best_cut(range, scales);
+  if (best.axis < 0) return halve(range);
+  const bin_scale& scale = scales[static_cast<std::size_t>(best.axis)];
+  triangle_range left{range.begin, range.begin, {}}, right{range.end, range.end, {}};
+  while (left.end < right.begin) {
+    const std::uint32_t t = order_[left.end];
+    if (scale.of(boxes_[t].middle(best.axis)) < best.bin) {
+      left.box.add(boxes_[t]);
+      ++left.end;
+    } else {
+      right.box.add(boxes_[t]);
+      std::swap(order_[left.end], order_[--right.begin]);
+    }
+  }
+  return {left, right};
+}
+
+inline std::size_t ray_tree_builder::split_eightfold(std::array<triangle_range, 8>& parts,
+                                                     std::size_t level) {
+  std::size_t n = 1;
+  for (; n < parts.size(); ++n) {
+    triangle_range* widest = nullptr;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (parts[i].size() <= triangle_block::size) continue;
+      if (!widest || parts[i].box.half_area() > widest->box.half_area()) widest = &parts[i];
+    }
+    if (!widest) break;
+    std::tie(*widest, parts[n]) = split(*widest, level);
+  }
+  return n;
+}
+
+inline std::uint32_t ray_tree_builder::add_block(ray_subtree& tree,
+                                                 const triangle_range& range) const {
+  triangle_block block;
+  block.n = range.size();
+  for (std::uint32_t lane = 0; lane < triangle_block::size; ++lane) {
+    const std::uint32_t t = order_[range.begin + (lane < block.n ? lane : 0)];
+    block.index[lane] = t;
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < 3; ++a) block.corner[k][a][lane] = triangles_[t].at[k][a];
+  }
+  tree.blocks.push_back(block);
+  return static_cast<std::uint32_t>(tree.blocks.size() - 1);
+}
+
+inline std::uint32_t ray_tree_builder::add_node(ray_subtree& tree,
+                                                const triangle_range& range,
+                                                std::size_t level,
+                                                std::vector<postponed_child>* later) {
+  std::array<triangle_range, 8> parts;
+  parts[0] = range;
+  const auto n = static_cast<std::uint32_t>(split_eightfold(parts, level));
+  const auto here = static_cast<std::uint32_t>(tree.nodes.size());
+  ray_node node = {};
+  node.n = n;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      node.low[a][i] = parts[i].box.low[a];
+      node.high[a][i] = parts[i].box.high[a];
+    }
+  }
+  tree.nodes.push_back(node);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    std::uint32_t child = 0;
+    if (parts[i].size() <= triangle_block::size) {
+      child = ray_node::leaf | add_block(tree, parts[i]);
+    } else if (later && parts[i].size() < put_off_below_) {
+      later->push_back({here, i, level + 1, parts[i]});
+    } else {
+      child = add_node(tree, parts[i], level + 1, later);
+    }
+    tree.nodes[here].child[i] = child;
+  }
+  return here;
+}
+
+/// Puts a subtree behind a tree. Returns where its root is.
+inline std::uint32_t append(ray_subtree& tree, const ray_subtree& part) {
+  const auto first_node = static_cast<std::uint32_t>(tree.nodes.size());
+  const auto first_block = static_cast<std::uint32_t>(tree.blocks.size());
+  for (ray_node node : part.nodes) {
+    for (std::uint32_t i = 0; i < node.n; ++i)
+      node.child[i] += (node.child[i] & ray_node::leaf) != 0 ? first_block : first_node;
+    tree.nodes.push_back(node);
+  }
+  tree.blocks.insert(tree.blocks.end(), part.blocks.begin(), part.blocks.end());
+  return first_node;
+}
+
+inline ray_subtree ray_tree_builder::build(unsigned threads, const control& control) {
+  const auto n = static_cast<std::uint32_t>(triangles_.size());
+  put_off_below_ = std::max(n / 64, 4096u);
+  std::vector<postponed_child> later;
+  ray_subtree tree;
+  add_node(tree, {0, n, box_of(0, n)}, 0, &later);
+  std::vector<ray_subtree> parts(later.size());
+  for_each_chunk(later.size(), 1, threads, control, [&](const chunk& c) {
+    add_node(parts[c.index], later[c.index].range, later[c.index].level, nullptr);
+  });
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    tree.nodes[later[i].node].child[later[i].slot] = append(tree, parts[i]);
+  return tree;
+}
+
+}  // namespace detail
+
+inline ray_tree::ray_tree(std::span<const corners> triangles,
+                          unsigned threads,
+                          const control& control) {
+  if (triangles.empty()) throw undefined_error("search::ray_tree: no triangle");
+  if (threads == 0) threads = available_threads();
+  detail::ray_subtree tree =
+      detail::ray_tree_builder(triangles, threads, control).build(threads, control);
+  nodes_ = std::move(tree.nodes);
+  blocks_ = std::move(tree.blocks);
+}
+
+inline std::array<Eigen::Vector3d, 3> ray_tree::triangle(std::uint32_t place) const {
+  const triangle_block& block = blocks_[place / triangle_block::size];
+  const std::size_t lane = place % triangle_block::size;
+  std::array<Eigen::Vector3d, 3> t;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (int a = 0; a < 3; ++a) t[k][a] = static_cast<double>(block.corner[k][a][lane]);
+  return t;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/ray_triangles.hpp
+
+namespace aib::search {
+
+inline namespace AIB_ISA {
+
+namespace detail {
+
+/// How far forward a ray in the plane of a triangle meets its outline.
+inline double side_distance(const ray_frame& frame,
+                            const Eigen::Vector3d& ray,
+                            const Eigen::Vector3d& normal,
+                            const std::array<Eigen::Vector3d, 3>& triangle) {
+  const Eigen::Vector3d forward = frame.axes.row(2), aside = normal.cross(ray);
+  double nearest = HUGE_VAL;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d from = triangle[k] - frame.origin;
+    const Eigen::Vector3d to = triangle[(k + 1) % 3] - frame.origin;
+    const double before = aside.dot(from), behind = aside.dot(to);
+    if ((before > 0) == (behind > 0)) continue;
+    const double share = before / (before - behind);
+    nearest = std::min(nearest, forward.dot(from) + share * forward.dot(to - from));
+  }
+  return nearest;
+}
+
+}  // namespace detail
+
+/// How far forward in the frame a ray meets a triangle that it hits: at origin + distance * ray. A
+/// ray that passes an edge by a rounding error is held within the triangle's own range.
+[[nodiscard]] inline double forward_distance(const ray_frame& frame,
+                                             const Eigen::Vector3d& ray,
+                                             const std::array<Eigen::Vector3d, 3>& triangle) {
+  const Eigen::Vector3d a = triangle[0] - frame.origin;
+  const Eigen::Vector3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double steepness = normal.dot(ray);
+  const Eigen::Vector3d forward = frame.axes.row(2);
+  const double at_a = forward.dot(a), at_b = at_a + forward.dot(ab), at_c = at_a + forward.dot(ac);
+  const double low = std::min({at_a, at_b, at_c}), high = std::max({at_a, at_b, at_c});
+  const bool from_the_side = steepness * steepness <= 1e-12 * normal.squaredNorm();
+  const double distance = from_the_side ? detail::side_distance(frame, ray, normal, triangle)
+                                        : normal.dot(a) / steepness;
+  return distance > low ? std::min(distance, high) : low;
+}
+
+/// Eight vectors, coordinates side by side.
+struct vector_f32x8 {
+  f32x8 x, y, z;
+
+  friend vector_f32x8 operator-(const vector_f32x8& a, const vector_f32x8& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+};
+
+inline f32x8 dot(const vector_f32x8& a, const vector_f32x8& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+/// Swapping the factors changes the sign and no other bit.
+inline vector_f32x8 cross(const vector_f32x8& a, const vector_f32x8& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline f32x8 absolute(f32x8 a) { return max(a, f32x8::broadcast(0) - a); }
+
+/// A ray_frame eight-fold. The origin is held as the sum of two floats, so that what is near the
+/// camera is placed as exactly as the camera is, wherever that stands.
+class ray_frame_f32x8 {
+ public:
+  explicit ray_frame_f32x8(const ray_frame& frame) {
+    for (int a = 0; a < 3; ++a) {
+      const auto coarse = static_cast<float>(frame.origin[a]);
+      coarse_[a] = f32x8::broadcast(coarse);
+      fine_[a] =
+          f32x8::broadcast(static_cast<float>(frame.origin[a] - static_cast<double>(coarse)));
+      for (int b = 0; b < 3; ++b)
+        axes_[a][b] = f32x8::broadcast(static_cast<float>(frame.axes(a, b)));
+    }
+  }
+
+  /// Eight coordinates on an axis of the world, counted from the origin.
+  [[nodiscard]] f32x8 from_origin(const float* coordinates, int axis) const {
+    return (f32x8::load(coordinates) - coarse_[axis]) - fine_[axis];
+  }
+
+  /// A corner of the triangles in the frame.
+  [[nodiscard]] vector_f32x8 corner(const triangle_block& block, int k) const {
+    const f32x8 x = from_origin(block.corner[k][0], 0);
+    const f32x8 y = from_origin(block.corner[k][1], 1);
+    const f32x8 z = from_origin(block.corner[k][2], 2);
+    const auto along = [&](int a) { return (axes_[a][0] * x + axes_[a][1] * y) + axes_[a][2] * z; };
+    return {along(0), along(1), along(2)};
+  }
+
+ private:
+  f32x8 coarse_[3], fine_[3], axes_[3][3];
+};
+
+/// Bits of the lanes of a block or node that are there.
+constexpr unsigned first_lanes(std::uint32_t n) { return (1u << n) - 1; }
+
+/// Eight triangles as their outlines and inverse depths in the plane of slopes.
+///
+/// A ray (s, t, 1) hits where every edge function `edge.x s + edge.y t + edge.z` is >= 0. They are
+/// raised by a bound of their rounding error: between two triangles that share an edge or a corner
+/// no ray finds a gap. There its inverse forward distance is `inverse.x s + inverse.y t +
+/// inverse.z`, held within [farthest, nearest].
+///
+/// Source: Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997: the
+/// functions hold for corners behind the camera as well.
+struct triangle_outlines {
+  vector_f32x8 edge[3];
+  f32x8 slack[3];  ///< by which each edge is raised
+  vector_f32x8 inverse;
+  f32x8 farthest, nearest;
+  unsigned edge_on;  ///< lanes that are seen from the side: either orientation may hit
+  unsigned nowhere;  ///< those of them that the camera's plane cuts: they hide nothing
+
+  /// largest_slope   of all rays
+  triangle_outlines(const vector_f32x8 (&corner)[3], float largest_slope);
+
+  /// Turns to the other orientation.
+  void turn() {
+    const f32x8 zero = f32x8::broadcast(0), two = f32x8::broadcast(2);
+    for (int k = 0; k < 3; ++k) {
+      vector_f32x8& e = edge[k];
+      e = {zero - e.x, zero - e.y, two * slack[k] - e.z};
+    }
+  }
+};
+
+namespace detail {
+
+/// What the products in a cross product could add up to: of its z, and of its x and y.
+struct cross_bound {
+  f32x8 z, xy;
+
+  cross_bound(const vector_f32x8& a, const vector_f32x8& b) {
+    const f32x8 side_a = max(absolute(a.x), absolute(a.y));
+    const f32x8 side_b = max(absolute(b.x), absolute(b.y));
+    z = (side_a * side_b) * f32x8::broadcast(2);
+    xy = side_a * absolute(b.z) + absolute(a.z) * side_b;
+  }
+};
+
+/// Eight units of rounding: more than any sum here gathers.
+inline constexpr float rounding = 5e-7f;
+
+}  // namespace detail
+
+inline triangle_outlines::triangle_outlines(const vector_f32x8 (&corner)[3], float largest_slope) {
+  const f32x8 zero = f32x8::broadcast(0), one = f32x8::broadcast(1), two = f32x8::broadcast(2);
+  const f32x8 slope = f32x8::broadcast(2 * largest_slope);
+  const f32x8 unit = f32x8::broadcast(detail::rounding);
+  const detail::cross_bound first(corner[1], corner[2]);
+  const f32x8 side = max(absolute(corner[0].x), absolute(corner[0].y));
+  const f32x8 uncertain = (absolute(corner[0].z) * first.z + two * (side * first.xy)) * unit;
+  const f32x8 volume = dot(corner[0], cross(corner[1], corner[2]));
+  const f32x8 sign = choose(volume, zero, f32x8::broadcast(-1), one);
+  for (int k = 0; k < 3; ++k) {
+    const vector_f32x8& from = corner[(k + 1) % 3];
+    const vector_f32x8& to = corner[(k + 2) % 3];
+    const detail::cross_bound bound(from, to);
+    const vector_f32x8 e = cross(from, to);
+    slack[k] = (bound.z + slope * bound.xy) * unit;
+    edge[k] = {e.x * sign, e.y * sign, e.z * sign + slack[k]};
+  }
+
+  const vector_f32x8 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const f32x8 scale = one / dot(normal, corner[0]);
+  inverse = {normal.x * scale, normal.y * scale, normal.z * scale};
+  const f32x8 near_z = min(min(corner[0].z, corner[1].z), corner[2].z);
+  const f32x8 far_z = max(max(corner[0].z, corner[1].z), corner[2].z);
+  farthest = choose(zero, near_z, one / far_z, zero);
+  nearest = choose(zero, near_z, one / near_z, f32x8::broadcast(1e30f));
+  edge_on = ~less(uncertain, absolute(volume)) & 0xffu;
+  nowhere = edge_on & ~less(zero, near_z);
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/ray_trace.hpp
+
+namespace aib::search {
+
+/// The nearest triangle that each ray of a fan hits.
+struct fan_hits {
+  static constexpr std::uint32_t none = ~0u;
+
+  std::uint32_t place[ray_fan::lanes];  ///< in the tree; `none`
+};
+
+inline namespace AIB_ISA {
+
+/// The nearest hits of all rays of a fan: they walk the tree together, as one narrow pyramid, and
+/// each triangle is tried on eight rays at a time.
+///
+/// Of two triangles at the same float distance the one that is met first is hit.
+/// Source: Reshetov, Soupikov, Hurley, "Multi-level ray tracing algorithm", SIGGRAPH 2005 (pyramids
+/// of rays).
+[[nodiscard]] fan_hits trace(const ray_tree& tree, const ray_frame& frame, const ray_fan& fan);
+
+/// A node or block that waits to be visited, and how far forward it begins.
+struct pending_part {
+  float near;
+  std::uint32_t part;
+};
+
+/// Parts that wait, the nearest child of the last visited node on top.
+class pending_parts {
+ public:
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  pending_part pop() { return parts_[--size_]; }
+  void push_root() { parts_[size_++] = {0, 0}; }
+
+  /// The children of a node whose bits are set in `mask`, farthest first.
+  void push_children(const ray_node& node, f32x8 near, unsigned mask) {
+    float distance[8];
+    near.store(distance);
+    const std::size_t bottom = size_;
+    for (; mask != 0; mask &= mask - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+      std::size_t place = size_++;
+      for (; place > bottom && parts_[place - 1].near < distance[lane]; --place)
+        parts_[place] = parts_[place - 1];
+      parts_[place] = {distance[lane], node.child[lane]};
+    }
+  }
+
+ private:
+  pending_part parts_[8 * ray_tree::max_levels];
+  std::size_t size_ = 0;
+};
+
+namespace detail {
+
+/// One walk of a fan through a tree.
+class fan_walk {
+ public:
+  fan_walk(const ray_tree& tree, const ray_frame& frame, const ray_fan& fan);
+
+  fan_hits hits();
+
+ private:
+  /// The pyramid's four sides, pointing inwards, and its axis, in the world.
+  static constexpr int n_planes = 5;
+  static constexpr int forward = 4;
+
+  void visit(const ray_node& node);
+  void visit(const triangle_block& block, std::uint32_t index);
+  [[nodiscard]] unsigned in_pyramid(const vector_f32x8 (&corner)[3]) const;
+  void find_groups(const vector_f32x8 (&corner)[3]);
+  void store(const triangle_outlines& outlines);
+  template <class Try>
+  void for_each_group(std::size_t lane, Try&& attempt);
+  template <class Narrow>
+  void try_lane(std::size_t lane, std::uint32_t place, Narrow&& narrow);
+  void try_edge_on(std::size_t lane, std::uint32_t place);
+  void update_limit();
+
+  const ray_tree& tree_;
+  const ray_fan& fan_;
+  ray_frame_f32x8 frame_;
+  f32x8 plane_[n_planes][3];
+  bool plane_up_[n_planes][3];
+  f32x8 slope_low_[2], slope_high_[2];
+  float largest_slope_;
+
+  pending_parts pending_;
+  fan_hits hits_;
+  alignas(32) float best_[ray_fan::lanes];  ///< inverse forward distance
+  float limit_ = HUGE_VALF;                 ///< nothing is sought beyond this forward distance
+  bool improved_ = false;                   ///< since the limit was set
+
+  /// Coefficients of the eight triangles of a block, see triangle_outlines.
+  alignas(32) float edge_[3][3][8];
+  alignas(32) float inverse_[3][8];
+  alignas(32) float range_[2][8];
+  alignas(32) float extent_low_[2][8], extent_high_[2][8];  ///< of the slopes of each
+};
+
+inline fan_walk::fan_walk(const ray_tree& tree, const ray_frame& frame, const ray_fan& fan)
+    : tree_(tree), fan_(fan), frame_(frame) {
+  const Eigen::Matrix3d& axes = frame.axes;
+  Eigen::Matrix<double, n_planes, 3> planes;
+  for (int a = 0; a < 2; ++a) {
+    planes.row(2 * a) = axes.row(a) - static_cast<double>(fan.low[a]) * axes.row(2);
+    planes.row(2 * a + 1) = static_cast<double>(fan.high[a]) * axes.row(2) - axes.row(a);
+    slope_low_[a] = f32x8::broadcast(fan.low[a]);
+    slope_high_[a] = f32x8::broadcast(fan.high[a]);
+  }
+  planes.row(forward) = axes.row(2);
+  for (int p = 0; p < n_planes; ++p) {
+    for (int a = 0; a < 3; ++a) {
+      plane_[p][a] = f32x8::broadcast(static_cast<float>(planes(p, a)));
+      plane_up_[p][a] = planes(p, a) >= 0;
+    }
+  }
+  largest_slope_ = std::max({-fan.low[0], -fan.low[1], fan.high[0], fan.high[1]});
+  for (std::size_t i = 0; i < ray_fan::lanes; ++i) {
+    best_[i] = fan.used[i] ? 0 : HUGE_VALF;
+    hits_.place[i] = fan_hits::none;
+  }
+}
+
+inline fan_hits fan_walk::hits() {
+  if (!fan_.empty()) pending_.push_root();
+  while (!pending_.empty()) {
+    const pending_part next = pending_.pop();
+    if (next.near > limit_) continue;
+    if ((next.part & ray_node::leaf) == 0) {
+      visit(tree_.nodes()[next.part]);
+    } else {
+      const std::uint32_t b = next.part & ~ray_node::leaf;
+      visit(tree_.blocks()[b], b);
+    }
+  }
+  return hits_;
+}
+
+inline void fan_walk::visit(const ray_node& node) {
+  f32x8 low[3], high[3];
+  for (int a = 0; a < 3; ++a) {
+    low[a] = frame_.from_origin(node.low[a], a);
+    high[a] = frame_.from_origin(node.high[a], a);
+  }
+  const auto farthest_along = [&](int p) {
+    const auto at = [&](int a) { return plane_[p][a] * (plane_up_[p][a] ? high[a] : low[a]); };
+    return (at(0) + at(1)) + at(2);
+  };
+  f32x8 inside = farthest_along(forward);
+  for (int p = 0; p < forward; ++p) inside = min(inside, farthest_along(p));
+  const auto at = [&](int a) {
+    return plane_[forward][a] * (plane_up_[forward][a] ? low[a] : high[a]);
+  };
+  const f32x8 near = (at(0) + at(1)) + at(2);
+  const unsigned out = less(inside, f32x8::broadcast(0)) | less(f32x8::broadcast(limit_), near);
+  pending_.push_children(node, near, first_lanes(node.n) & ~out);
+}
+
+inline unsigned fan_walk::in_pyramid(const vector_f32x8 (&corner)[3]) const {
+  const f32x8 far_z = max(max(corner[0].z, corner[1].z), corner[2].z);
+  f32x8 inside = far_z;
+  const auto best_of = [&](auto&& signed_gap) {
+    inside =
+        min(inside, max(max(signed_gap(corner[0]), signed_gap(corner[1])), signed_gap(corner[2])));
+  };
+  best_of([&](const vector_f32x8& c) { return c.x - slope_low_[0] * c.z; });
+  best_of([&](const vector_f32x8& c) { return slope_high_[0] * c.z - c.x; });
+  best_of([&](const vector_f32x8& c) { return c.y - slope_low_[1] * c.z; });
+  best_of([&](const vector_f32x8& c) { return slope_high_[1] * c.z - c.y; });
+  const f32x8 near_z = min(min(corner[0].z, corner[1].z), corner[2].z);
+  return ~(less(inside, f32x8::broadcast(0)) | less(f32x8::broadcast(limit_), near_z));
+}
+
+/// The slopes that each triangle extends over; everything where a corner is behind the camera.
+inline void fan_walk::find_groups(const vector_f32x8 (&corner)[3]) {
+  const f32x8 zero = f32x8::broadcast(0), one = f32x8::broadcast(1);
+  const f32x8 near_z = min(min(corner[0].z, corner[1].z), corner[2].z);
+  f32x8 slope[2][3];
+  for (int k = 0; k < 3; ++k) {
+    const f32x8 scale = one / corner[k].z;
+    slope[0][k] = corner[k].x * scale;
+    slope[1][k] = corner[k].y * scale;
+  }
+  const f32x8 margin = f32x8::broadcast(slope_margin), all = f32x8::broadcast(HUGE_VALF);
+  for (int a = 0; a < 2; ++a) {
+    const f32x8 low = min(min(slope[a][0], slope[a][1]), slope[a][2]) - margin;
+    const f32x8 high = max(max(slope[a][0], slope[a][1]), slope[a][2]) + margin;
+    choose(zero, near_z, low, zero - all).store(extent_low_[a]);
+    choose(zero, near_z, high, all).store(extent_high_[a]);
+  }
+}
+
+inline void fan_walk::store(const triangle_outlines& outlines) {
+  for (int k = 0; k < 3; ++k) {
+    outlines.edge[k].x.store(edge_[k][0]);
+    outlines.edge[k].y.store(edge_[k][1]);
+    outlines.edge[k].z.store(edge_[k][2]);
+  }
+  outlines.inverse.x.store(inverse_[0]);
+  outlines.inverse.y.store(inverse_[1]);
+  outlines.inverse.z.store(inverse_[2]);
+  outlines.farthest.store(range_[0]);
+  outlines.nearest.store(range_[1]);
+}
+
+inline void fan_walk::visit(const triangle_block& block, std::uint32_t index) {
+  const vector_f32x8 corner[3] = {frame_.corner(block, 0), frame_.corner(block, 1),
+                                  frame_.corner(block, 2)};
+  unsigned mask = first_lanes(block.n) & in_pyramid(corner);
+  if (mask == 0) return;
+  triangle_outlines outlines(corner, largest_slope_);
+  find_groups(corner);
+  store(outlines);
+  mask &= ~outlines.nowhere;
+  const unsigned edge_on = mask & outlines.edge_on;
+  for (mask &= ~edge_on; mask != 0; mask &= mask - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
+    try_lane(lane, 8 * index + lane, [](f32x8, f32x8, f32x8 inside) { return inside; });
+  }
+  for (int side = 0; edge_on != 0 && side < 2; ++side) {
+    for (unsigned left = edge_on; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      try_edge_on(lane, 8 * index + lane);
+    }
+    outlines.turn();
+    store(outlines);
+  }
+  update_limit();
+}
+
+/// Calls `attempt(slope, slope, first ray)` for the groups that the triangle may reach.
+template <class Try>
+void fan_walk::for_each_group(std::size_t lane, Try&& attempt) {
+  unsigned out = 0;
+  for (int a = 0; a < 2; ++a) {
+    out |= less(f32x8::load(fan_.group_high[a]), f32x8::broadcast(extent_low_[a][lane]));
+    out |= less(f32x8::broadcast(extent_high_[a][lane]), f32x8::load(fan_.group_low[a]));
+  }
+  for (unsigned groups = ~out & 0xffu; groups != 0; groups &= groups - 1) {
+    const std::size_t first = 8 * static_cast<std::size_t>(std::countr_zero(groups));
+    attempt(f32x8::load(fan_.slope[0] + first), f32x8::load(fan_.slope[1] + first), first);
+  }
+}
+
+/// narrow   takes the slopes of eight rays and whether they are inside of the outline (>= 0), and
+///          says the same of a narrower one
+template <class Narrow>
+void fan_walk::try_lane(std::size_t lane, std::uint32_t place, Narrow&& narrow) {
+  const auto all = [lane](const float* values) { return f32x8::broadcast(values[lane]); };
+  const vector_f32x8 edge[3] = {{all(edge_[0][0]), all(edge_[0][1]), all(edge_[0][2])},
+                                {all(edge_[1][0]), all(edge_[1][1]), all(edge_[1][2])},
+                                {all(edge_[2][0]), all(edge_[2][1]), all(edge_[2][2])}};
+  const vector_f32x8 inverse{all(inverse_[0]), all(inverse_[1]), all(inverse_[2])};
+  const f32x8 farthest = all(range_[0]), nearest = all(range_[1]);
+  for_each_group(lane, [&](f32x8 s, f32x8 t, std::size_t first) {
+    const auto at = [&](const vector_f32x8& f) { return (f.x * s + f.y * t) + f.z; };
+    const f32x8 inside = narrow(s, t, min(min(at(edge[0]), at(edge[1])), at(edge[2])));
+    // NaN, where a triangle is seen from the side, becomes the nearest.
+    const f32x8 found = max(min(at(inverse), nearest), farthest);
+    const f32x8 best = f32x8::load(best_ + first);
+    const f32x8 hit = choose(inside, f32x8::broadcast(0), f32x8::broadcast(-1), found);
+    unsigned better = less(best, hit);
+    if (better == 0) return;
+    max(hit, best).store(best_ + first);
+    for (; better != 0; better &= better - 1)
+      hits_.place[first + static_cast<std::size_t>(std::countr_zero(better))] = place;
+    improved_ = true;
+  });
+}
+
+/// A triangle that is a line to the rays has no outline that would end it: its extent does.
+inline void fan_walk::try_edge_on(std::size_t lane, std::uint32_t place) {
+  try_lane(lane, place, [&](f32x8 s, f32x8 t, f32x8 inside) {
+    const auto all = [lane](const float* values) { return f32x8::broadcast(values[lane]); };
+    const f32x8 right = min(s - all(extent_low_[0]), all(extent_high_[0]) - s);
+    const f32x8 down = min(t - all(extent_low_[1]), all(extent_high_[1]) - t);
+    return min(inside, min(right, down));
+  });
+}
+
+inline void fan_walk::update_limit() {
+  if (!improved_) return;
+  improved_ = false;
+  f32x8 least = f32x8::load(best_);
+  for (std::size_t i = 8; i < ray_fan::lanes; i += 8) least = min(least, f32x8::load(best_ + i));
+  // Boxes are placed in floats: a little farther than the hits is still looked at.
+  limit_ = 1.00001f / lowest(least);
+}
+
+}  // namespace detail
+
+inline fan_hits trace(const ray_tree& tree, const ray_frame& frame, const ray_fan& fan) {
+  return detail::fan_walk(tree, frame, fan).hits();
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/search/ray_one.hpp
+
+namespace aib::search {
+
+/// A triangle that a ray hits, and where.
+struct ray_hit {
+  std::uint32_t place;  ///< in the tree
+  double distance;      ///< from the origin
+};
+
+inline namespace AIB_ISA {
+
+/// The nearest hit of one ray; nothing where it hits nothing within the distance. As watertight as
+/// `trace`.
+///
+/// direction   not zero, of any length
+[[nodiscard]] std::optional<ray_hit> first_hit(const ray_tree& tree,
+                                               const Eigen::Vector3d& origin,
+                                               const Eigen::Vector3d& direction,
+                                               double max_distance = HUGE_VAL);
+
+/// Whether anything lies on the way from `origin` to the point at `distance`.
+[[nodiscard]] bool is_blocked(const ray_tree& tree,
+                              const Eigen::Vector3d& origin,
+                              const Eigen::Vector3d& direction,
+                              double distance);
+
+namespace detail {
+
+/// One walk of one ray through a tree.
+class ray_walk {
+ public:
+  ray_walk(const ray_tree& tree, const ray_frame& frame, double max_distance)
+      : tree_(tree), exact_(frame), frame_(frame), limit_(max_distance) {
+    for (int a = 0; a < 3; ++a) {
+      const double slope = frame.axes(2, a);
+      // A ray along a wall of a box stays within it by rounding at most: 0 would make 0 * infinity.
+      const double inverse = 1 / (std::abs(slope) < 1e-12 ? std::copysign(1e-12, slope) : slope);
+      inverse_[a] = f32x8::broadcast(static_cast<float>(inverse));
+      up_[a] = inverse > 0;
+    }
+  }
+
+  std::optional<ray_hit> nearest() {
+    walk([&](const triangle_block& block, std::uint32_t b) { return visit(block, b), false; });
+    return best_;
+  }
+  bool any() {
+    return walk([&](const triangle_block& block, std::uint32_t b) {
+      visit(block, b);
+      return best_.has_value();
+    });
+  }
+
+ private:
+  template <class Visit>
+  bool walk(Visit&& visit_block) {
+    pending_.push_root();
+    while (!pending_.empty()) {
+      const pending_part next = pending_.pop();
+      if (static_cast<double>(next.near) > limit_ * (1 + 1e-5)) continue;
+      const std::uint32_t b = next.part & ~ray_node::leaf;
+      if (b == next.part) {
+        visit(tree_.nodes()[b]);
+      } else if (visit_block(tree_.blocks()[b], b)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  void visit(const ray_node& node);
+  void visit(const triangle_block& block, std::uint32_t index);
+  [[nodiscard]] unsigned around_the_ray(const vector_f32x8 (&corner)[3]) const;
+
+  const ray_tree& tree_;
+  const ray_frame& exact_;
+  ray_frame_f32x8 frame_;
+  f32x8 inverse_[3];
+  bool up_[3];
+  double limit_;
+  pending_parts pending_;
+  std::optional<ray_hit> best_;
+};
+
+/// Slabs are widened by their rounding error on each side.
+inline void ray_walk::visit(const ray_node& node) {
+  const f32x8 share = f32x8::broadcast(4e-7f);
+  f32x8 enter = f32x8::broadcast(0);
+  f32x8 leave = f32x8::broadcast(static_cast<float>(std::min(limit_ * (1 + 1e-5), 3e38)));
+  for (int a = 0; a < 3; ++a) {
+    const f32x8 low = frame_.from_origin(node.low[a], a);
+    const f32x8 high = frame_.from_origin(node.high[a], a);
+    const f32x8 slack = share * max(absolute(low), absolute(high));
+    const f32x8 first = (up_[a] ? low - slack : high + slack) * inverse_[a];
+    const f32x8 last = (up_[a] ? high + slack : low - slack) * inverse_[a];
+    enter = max(enter, first);
+    leave = min(leave, last);
+  }
+  const f32x8 wider = leave + leave * share;
+  pending_.push_children(node, enter, first_lanes(node.n) & ~less(wider, enter));
+}
+
+/// Bits of the triangles that the ray passes through, seen along it. The extent ends those that it
+/// sees from the side.
+inline unsigned ray_walk::around_the_ray(const vector_f32x8 (&corner)[3]) const {
+  const f32x8 zero = f32x8::broadcast(0);
+  f32x8 left = f32x8::broadcast(HUGE_VALF), right = left;
+  for (int k = 0; k < 3; ++k) {
+    const vector_f32x8& from = corner[(k + 1) % 3];
+    const vector_f32x8& to = corner[(k + 2) % 3];
+    const f32x8 slack = cross_bound(from, to).z * f32x8::broadcast(rounding);
+    const f32x8 e = from.x * to.y - from.y * to.x;
+    left = min(left, slack + e);
+    right = min(right, slack - e);
+  }
+  const f32x8 far_z = max(max(corner[0].z, corner[1].z), corner[2].z);
+  const f32x8 low_x = min(min(corner[0].x, corner[1].x), corner[2].x);
+  const f32x8 low_y = min(min(corner[0].y, corner[1].y), corner[2].y);
+  const f32x8 high_x = max(max(corner[0].x, corner[1].x), corner[2].x);
+  const f32x8 high_y = max(max(corner[0].y, corner[1].y), corner[2].y);
+  const f32x8 margin = f32x8::broadcast(slope_margin) * far_z;
+  const f32x8 within = min(min(high_x, high_y), zero - max(low_x, low_y)) + margin;
+  return ~((less(left, zero) & less(right, zero)) | less(far_z, zero) | less(within, zero));
+}
+
+inline void ray_walk::visit(const triangle_block& block, std::uint32_t index) {
+  const vector_f32x8 corner[3] = {frame_.corner(block, 0), frame_.corner(block, 1),
+                                  frame_.corner(block, 2)};
+  unsigned mask = first_lanes(block.n) & around_the_ray(corner);
+  for (; mask != 0; mask &= mask - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
+    const std::uint32_t place = 8 * index + lane;
+    const double distance = forward_distance(exact_, exact_.axes.row(2), tree_.triangle(place));
+    if (distance > 0 && distance < limit_) {
+      limit_ = distance;
+      best_ = ray_hit{place, distance};
+    }
+  }
+}
+
+}  // namespace detail
+
+inline std::optional<ray_hit> first_hit(const ray_tree& tree,
+                                        const Eigen::Vector3d& origin,
+                                        const Eigen::Vector3d& direction,
+                                        double max_distance) {
+  const ray_frame frame = ray_frame::towards(origin, direction);
+  return detail::ray_walk(tree, frame, max_distance).nearest();
+}
+
+inline bool is_blocked(const ray_tree& tree,
+                       const Eigen::Vector3d& origin,
+                       const Eigen::Vector3d& direction,
+                       double distance) {
+  const ray_frame frame = ray_frame::towards(origin, direction);
+  return detail::ray_walk(tree, frame, distance).any();
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::search
+
+// aib/mesh/ray_surface.hpp
+
+namespace aib::mesh {
+inline namespace AIB_ISA {
+
+/// The finite triangles of a mesh under a tree for rays, with their labels: what is looked at.
+/// Both sides of a triangle are seen. A place is that of a triangle in the tree.
+class ray_surface {
+ public:
+  /// Throws undefined_error if no triangle is finite.
+  explicit ray_surface(const mesh& surface, unsigned threads = 0, const control& control = {})
+      : origin_(surface.origin),
+        label_names_(surface.label_names),
+        tree_(finite_triangles(surface), threads, control) {}
+
+  [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
+  [[nodiscard]] const search::ray_tree& tree() const { return tree_; }
+  [[nodiscard]] std::size_t n_triangles() const { return kept_.size(); }
+  [[nodiscard]] const std::vector<std::string>& label_names() const { return label_names_; }
+  [[nodiscard]] bool has_labels() const { return !labels_.empty(); }
+
+  /// Index of the triangle in the mesh.
+  [[nodiscard]] std::uint32_t triangle_at(std::uint32_t place) const {
+    return kept_[tree_.index(place)];
+  }
+  /// Label of the triangle; 0 where the mesh has none.
+  [[nodiscard]] std::uint32_t label_at(std::uint32_t place) const {
+    return labels_.empty() ? 0 : labels_[tree_.index(place)];
+  }
+  /// Unit normal of the triangle by the order of its corners; 0 where it has no area.
+  [[nodiscard]] Eigen::Vector3d normal_at(std::uint32_t place) const {
+    const auto t = tree_.triangle(place);
+    const Eigen::Vector3d ab = t[1] - t[0], ac = t[2] - t[0];
+    const Eigen::Vector3d normal = ab.cross(ac);
+    const double length = normal.norm();
+    return length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+  }
+
+  /// Where a ray first hits the surface; distances are those along the direction, of any length >
+  /// 0.
+  [[nodiscard]] std::optional<search::ray_hit> first_hit(const Eigen::Vector3d& from,
+                                                         const Eigen::Vector3d& direction,
+                                                         double max_distance = HUGE_VAL) const {
+    const Eigen::Vector3d in_tree = from - origin_;
+    return search::first_hit(tree_, in_tree, direction, max_distance);
+  }
+
+  /// Whether nothing lies between two points but within the tolerance of the second.
+  [[nodiscard]] bool sees(const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& to,
+                          double tolerance) const {
+    const Eigen::Vector3d way = to - from, in_tree = from - origin_;
+    const double distance = way.norm() - tolerance;
+    return !(distance > 0) || !search::is_blocked(tree_, in_tree, way, distance);
+  }
+
+ private:
+  std::vector<search::corners> finite_triangles(const mesh& surface);
+
+  Eigen::Vector3d origin_;
+  std::vector<std::string> label_names_;
+  std::vector<std::uint32_t> kept_, labels_;
+  search::ray_tree tree_;
+};
+
+inline std::vector<search::corners> ray_surface::finite_triangles(const mesh& surface) {
+  std::vector<search::corners> finite;
+  finite.reserve(surface.triangles.size());
+  const bool labelled = surface.labels.size() == surface.triangles.size();
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Eigen::Vector3f& at_a = surface.vertices[a];
+    const Eigen::Vector3f& at_b = surface.vertices[b];
+    const Eigen::Vector3f& at_c = surface.vertices[c];
+    if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
+    finite.emplace_back(at_a, at_b, at_c);
+    kept_.push_back(static_cast<std::uint32_t>(t));
+    if (labelled) labels_.push_back(surface.labels[t]);
+  }
+  if (finite.empty()) {
+    throw undefined_error(message("mesh::ray_surface: no finite triangle (",
+                                  surface.triangles.size(), " triangles)"));
+  }
+  return finite;
 }
 
 }  // namespace AIB_ISA
@@ -20555,6 +22113,656 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
 
 }  // namespace aib::pose
 
+// aib/render/view_rays.hpp
+
+namespace aib::render {
+
+/// The rays through the pixel centres of a camera, made once for many frames: squares of 8 x 8
+/// pixels, each a fan about its own axes. Of any camera model; a pixel without a ray sees nothing.
+class view_rays {
+ public:
+  static constexpr std::size_t side = 8;  ///< of a square, pixels
+
+  struct square {
+    Eigen::Matrix3d axes;  ///< right, down, forward of the fan, in the camera
+    search::ray_fan fan;
+    std::size_t x, y;  ///< of its first pixel
+
+    /// The pixel of a ray, counted from the square's first.
+    static std::size_t column(std::size_t lane) { return lane % 4 + 4 * (lane / 8 % 2); }
+    static std::size_t row(std::size_t lane) { return lane / 4 % 2 + 2 * (lane / 16); }
+  };
+
+  /// A ray that looks too far aside of its square's others to go with them.
+  struct stray {
+    Eigen::Vector3d direction;  ///< in the camera, unit length
+    std::size_t x, y;
+  };
+
+  /// width, height   of the map; 0: those of the camera. Another size sees the same field of view.
+  /// Throws argument_error where the size is not known or not below 2^15.
+  explicit view_rays(const math::camera& camera,
+                     std::size_t width = 0,
+                     std::size_t height = 0,
+                     unsigned threads = 0);
+
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t height() const { return height_; }
+  [[nodiscard]] const std::vector<square>& squares() const { return squares_; }
+  [[nodiscard]] const std::vector<stray>& strays() const { return strays_; }
+
+ private:
+  using directions = std::array<Eigen::Vector3d, search::ray_fan::lanes>;
+
+  [[nodiscard]] directions directions_of(const math::camera& camera, const square& s) const;
+  static std::vector<stray> fill(square& s, const directions& in_camera);
+
+  std::size_t width_, height_;
+  std::vector<square> squares_;
+  std::vector<stray> strays_;
+};
+
+namespace detail {
+
+inline std::size_t map_side(std::size_t wanted, std::uint64_t of_camera, const char* name) {
+  const std::uint64_t side = wanted > 0 ? wanted : of_camera;
+  if (side > 0 && side < 1u << 15) return static_cast<std::size_t>(side);
+  throw argument_error(message("render: a ", name, " of 1 to 32767 pixels expected, found ", side));
+}
+
+/// Axes about a direction, right as near to the camera's as may be.
+inline Eigen::Matrix3d axes_about(const Eigen::Vector3d& direction) {
+  Eigen::Matrix3d axes = search::ray_frame::towards({}, direction).axes;
+  const Eigen::Vector3d forward = axes.row(2);
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitX() - forward.x() * forward;
+  if (right.norm() < 1e-3) return axes;
+  axes.row(0) = right.normalized();
+  axes.row(1) = forward.cross(right.normalized());
+  return axes;
+}
+
+}  // namespace detail
+
+inline view_rays::directions view_rays::directions_of(const math::camera& camera,
+                                                      const square& s) const {
+  const auto scale = [](std::uint64_t of_camera, std::size_t of_map) {
+    return of_camera > 0 ? static_cast<double>(of_camera) / static_cast<double>(of_map) : 1;
+  };
+  const double scale_x = scale(camera.width, width_), scale_y = scale(camera.height, height_);
+  directions found;
+  for (std::size_t lane = 0; lane < found.size(); ++lane) {
+    const std::size_t x = s.x + square::column(lane), y = s.y + square::row(lane);
+    found[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (x >= width_ || y >= height_) continue;
+    const auto direction = math::unproject(camera, {(static_cast<double>(x) + 0.5) * scale_x,
+                                                    (static_cast<double>(y) + 0.5) * scale_y});
+    if (direction) found[lane] = *direction;
+  }
+  return found;
+}
+
+inline std::vector<view_rays::stray> view_rays::fill(square& s, const directions& in_camera) {
+  constexpr double least_forward = 0.5;  // 60 degrees off the axis of the square
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& d : in_camera)
+    if (d.allFinite()) middle += d;
+  s.axes = middle.norm() > 1e-3 ? detail::axes_about(middle) : Eigen::Matrix3d::Identity();
+  std::vector<stray> strays;
+  std::array<Eigen::Vector2d, search::ray_fan::lanes> slopes;
+  for (std::size_t lane = 0; lane < slopes.size(); ++lane) {
+    const Eigen::Vector3d along = s.axes * in_camera[lane];
+    slopes[lane] = along.head<2>() / along.z();
+    if (along.z() >= least_forward) continue;
+    slopes[lane].setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (along.allFinite())
+      strays.push_back({in_camera[lane], s.x + square::column(lane), s.y + square::row(lane)});
+  }
+  s.fan = search::ray_fan::of(slopes);
+  return strays;
+}
+
+inline view_rays::view_rays(const math::camera& camera,
+                            std::size_t width,
+                            std::size_t height,
+                            unsigned threads)
+    : width_(detail::map_side(width, camera.width, "width")),
+      height_(detail::map_side(height, camera.height, "height")) {
+  const std::size_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
+  squares_.resize(columns * rows);
+  strays_ = reduce_chunks(
+      squares_.size(), 256, threads, {}, std::vector<stray>(),
+      [&](const chunk& c) {
+        std::vector<stray> found;
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+          square& s = squares_[i];
+          s.x = side * (i % columns);
+          s.y = side * (i / columns);
+          const auto strays = fill(s, directions_of(camera, s));
+          found.insert(found.end(), strays.begin(), strays.end());
+        }
+        return found;
+      },
+      [](std::vector<stray> all, const std::vector<stray>& more) {
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+      });
+}
+
+}  // namespace aib::render
+
+// aib/render/hits.hpp
+
+namespace aib::render {
+
+/// How frames are cast. The result is the same for any number of threads.
+struct cast_options {
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// What the ray of a pixel hits.
+struct pixel_hit {
+  std::size_t x, y;
+  std::uint32_t place;              ///< of the triangle, see mesh::ray_surface
+  Eigen::Vector3d point_in_camera;  ///< x right, y down, z forward
+};
+
+inline namespace AIB_ISA {
+
+/// Calls `visit(const pixel_hit&)` for every pixel that sees the surface, from several threads at
+/// once and in any order. The triangle is found in floats, the point on it calculated in doubles.
+///
+/// Throws stopped_error when `control.stop` was requested.
+template <class Visit>
+void for_each_hit(const mesh::ray_surface& surface,
+                  const view_rays& rays,
+                  const math::rigid3& world_from_camera,
+                  const cast_options& options,
+                  Visit&& visit) {
+  const search::ray_tree& tree = surface.tree();
+  const Eigen::Vector3d origin = world_from_camera.translation - surface.origin();
+  const Eigen::Matrix3d camera_from_world = world_from_camera.rotation.transpose();
+  for_each_chunk(rays.squares().size(), 256, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const view_rays::square& square = rays.squares()[i];
+      const search::ray_frame frame{origin, square.axes * camera_from_world};
+      const search::fan_hits hits = search::trace(tree, frame, square.fan);
+      for (std::size_t lane = 0; lane < search::ray_fan::lanes; ++lane) {
+        const std::uint32_t place = hits.place[lane];
+        if (place == search::fan_hits::none) continue;
+        const Eigen::Vector3d ray(static_cast<double>(square.fan.slope[0][lane]),
+                                  static_cast<double>(square.fan.slope[1][lane]), 1);
+        const Eigen::Vector3d in_world = frame.axes.transpose() * ray;
+        const Eigen::Vector3d in_camera = square.axes.transpose() * ray;
+        const double distance = search::forward_distance(frame, in_world, tree.triangle(place));
+        visit(pixel_hit{square.x + view_rays::square::column(lane),
+                        square.y + view_rays::square::row(lane), place, distance * in_camera});
+      }
+    }
+  });
+  for (const view_rays::stray& s : rays.strays()) {
+    const Eigen::Vector3d in_world = world_from_camera.rotation * s.direction;
+    const auto hit = search::first_hit(tree, origin, in_world);
+    if (hit) visit(pixel_hit{s.x, s.y, hit->place, hit->distance * s.direction});
+  }
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::render
+
+// aib/render/depth.hpp
+
+namespace aib::render {
+
+/// What the pixels of a depth map hold.
+enum class depth_kind {
+  planar,  ///< distance along the optical axis
+  range,   ///< distance from the centre of the camera
+};
+
+/// Planar depth of a point; 0, which is no depth, beside and behind a camera of more than 180
+/// degrees.
+[[nodiscard]] inline float planar_depth(const Eigen::Vector3d& point_in_camera) {
+  return point_in_camera.z() > 0 ? static_cast<float>(point_in_camera.z()) : 0;
+}
+
+inline namespace AIB_ISA {
+
+/// The depth that a camera sees of a surface, sampled at pixel centres, 0 where it sees none.
+/// Equals Blender's Z pass to the rounding of floats.
+[[nodiscard]] inline depth::depth_map depth(const mesh::ray_surface& surface,
+                                            const view_rays& rays,
+                                            const math::rigid3& world_from_camera,
+                                            depth_kind kind = depth_kind::planar,
+                                            const cast_options& options = {}) {
+  depth::depth_map map{raster::image<float>(rays.width(), rays.height())};
+  for_each_hit(surface, rays, world_from_camera, options, [&](const pixel_hit& hit) {
+    map.values(hit.x, hit.y) = kind == depth_kind::planar
+                                   ? planar_depth(hit.point_in_camera)
+                                   : static_cast<float>(hit.point_in_camera.norm());
+  });
+  return map;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::render
+
+// aib/render/frame.hpp
+
+namespace aib::render {
+
+/// Everything that a camera sees of a surface, h x w each.
+struct frame {
+  depth::depth_map depth;  ///< planar, 0 where nothing is seen
+  depth::depth_map range;  ///< from the camera's centre, 0 where nothing is seen
+  raster::image<Eigen::Vector3f>
+      normals;                 ///< unit, in the camera, towards it; 0 where there is none
+  raster::label_image labels;  ///< of the faces; `background` where nothing is seen
+
+  [[nodiscard]] std::size_t n_seen() const;
+};
+
+struct frame_options {
+  std::uint16_t background = 65535;  ///< label where nothing is seen
+  cast_options cast = {};
+};
+
+inline std::size_t frame::n_seen() const {
+  std::size_t n = 0;
+  for (const float r : range.values) n += r > 0 ? 1u : 0u;
+  return n;
+}
+
+inline namespace AIB_ISA {
+
+/// Depth, range, normals and labels of one cast.
+/// Throws argument_error if a label that is seen is above 65535.
+[[nodiscard]] inline frame cast_frame(const mesh::ray_surface& surface,
+                                      const view_rays& rays,
+                                      const math::rigid3& world_from_camera,
+                                      const frame_options& options = {}) {
+  const std::size_t w = rays.width(), h = rays.height();
+  frame f{{raster::image<float>(w, h)},
+          {raster::image<float>(w, h)},
+          raster::image<Eigen::Vector3f>(w, h, Eigen::Vector3f::Zero()),
+          raster::label_image(w, h, options.background)};
+  const Eigen::Matrix3d camera_from_world = world_from_camera.rotation.transpose();
+  for_each_hit(surface, rays, world_from_camera, options.cast, [&](const pixel_hit& hit) {
+    const Eigen::Vector3d& p = hit.point_in_camera;
+    f.depth.values(hit.x, hit.y) = planar_depth(p);
+    f.range.values(hit.x, hit.y) = static_cast<float>(p.norm());
+    const Eigen::Vector3d normal = camera_from_world * surface.normal_at(hit.place);
+    const double side = normal.dot(p) > 0 ? -1 : 1;
+    f.normals(hit.x, hit.y) = (side * normal).cast<float>();
+    const std::uint32_t label = surface.label_at(hit.place);
+    if (label > 65535)
+      throw argument_error(message("render::cast_frame: label ", label, " is above 65535"));
+    f.labels(hit.x, hit.y) = static_cast<std::uint16_t>(label);
+  });
+  return f;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::render
+
+// aib/render/visible.hpp
+
+namespace aib::render {
+
+using math::is_in_image;
+using math::view;
+
+struct visible_options {
+  double tolerance = 0.001;  ///< what is nearer than a point by a smaller share of its distance
+                             ///< does not hide it
+  cast_options cast = {};
+};
+
+/// What views say of a point beside a surface.
+enum class space_verdict : std::uint8_t {
+  surface,  ///< it lies on the surface
+  free,     ///< a view looks through it: nothing is there
+  hidden,   ///< no view can tell
+};
+
+struct free_space_options {
+  double tolerance = 0.05;  ///< on the surface is what is not farther from it, its unit
+  cast_options cast = {};
+};
+
+inline namespace AIB_ISA {
+
+/// How many views see each point: it lies in their image and the surface does not hide it.
+[[nodiscard]] inline std::vector<std::uint32_t> n_views(const mesh::ray_surface& surface,
+                                                        const cloud::cloud& points,
+                                                        std::span<const view> views,
+                                                        const visible_options& options = {}) {
+  std::vector<std::uint32_t> n(points.size());
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  for_each_chunk(points.size(), 64, options.cast.threads, options.cast.control,
+                 [&](const chunk& c) {
+                   for (std::size_t i = c.begin; i < c.end; ++i) {
+                     const Eigen::Vector3d p = points.position(i);
+                     for (std::size_t k = 0; k < views.size(); ++k) {
+                       if (!cones[k].may_contain(p) || !is_in_image(views[k], p)) continue;
+                       const Eigen::Vector3d& from = views[k].world_from_camera.translation;
+                       const double tolerance = options.tolerance * (p - from).norm();
+                       n[i] += surface.sees(from, p, tolerance) ? 1u : 0u;
+                     }
+                   }
+                 });
+  return n;
+}
+
+/// The verdict on each point of a cloud: points that hang in free space are phantoms.
+///
+/// distances   of the points to the surface, see mesh::distances
+///
+/// A point that is not finite is hidden. Throws argument_error unless there is a distance a point.
+[[nodiscard]] inline std::vector<space_verdict> free_space(const mesh::ray_surface& surface,
+                                                           const cloud::cloud& points,
+                                                           std::span<const float> distances,
+                                                           std::span<const view> views,
+                                                           const free_space_options& options = {}) {
+  if (distances.size() != points.size()) {
+    throw argument_error(message("render::free_space: ", points.size(), " points, ",
+                                 distances.size(), " distances: one of each expected"));
+  }
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  const auto is_looked_through = [&](const Eigen::Vector3d& p) {
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (cones[k].may_contain(p) && is_in_image(views[k], p) &&
+          surface.sees(views[k].world_from_camera.translation, p, 0)) {
+        return true;
+      }
+    }
+    return false;
+  };
+  std::vector<space_verdict> verdicts(points.size(), space_verdict::hidden);
+  for_each_chunk(points.size(), 64, options.cast.threads, options.cast.control,
+                 [&](const chunk& c) {
+                   for (std::size_t i = c.begin; i < c.end; ++i) {
+                     const Eigen::Vector3d p = points.position(i);
+                     if (static_cast<double>(distances[i]) <= options.tolerance)
+                       verdicts[i] = space_verdict::surface;
+                     else if (is_looked_through(p))
+                       verdicts[i] = space_verdict::free;
+                   }
+                 });
+  return verdicts;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::render
+
+// aib/report/packed.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+#include <zlib.h>
+
+namespace aib::report {
+
+/// Bytes as base64 with padding (RFC 4648), as a page carries them.
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+/// Bytes as a zlib stream (RFC 1950), which browsers expand by themselves.
+[[nodiscard]] std::string deflated(std::string_view bytes);
+
+/// A closed range of numbers that steps are counted in.
+struct range {
+  double low = 0;
+  double high = 0;
+};
+
+/// The range of the finite numbers; 0..0 where there is none.
+template <class Number>
+[[nodiscard]] range range_of(std::span<const Number> values) {
+  range r{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Number v : values) {
+    if (!std::isfinite(v)) continue;
+    r.low = std::min(r.low, static_cast<double>(v));
+    r.high = std::max(r.high, static_cast<double>(v));
+  }
+  return r.low <= r.high ? r : range{};
+}
+
+/// The step of a number: 0 at the low end to max - 1 at the high end, max for NaN. Numbers outside
+/// count as the end next to them.
+template <class Step>
+[[nodiscard]] Step step_of(double value, const range& r) {
+  constexpr Step none = std::numeric_limits<Step>::max();
+  if (std::isnan(value)) return none;
+  const double width = r.high - r.low;
+  const double share = width > 0 ? std::clamp((value - r.low) / width, 0.0, 1.0) : 0;
+  return static_cast<Step>(std::lround(share * (none - 1)));
+}
+
+/// Appends a number in little-endian order.
+template <class Number>
+void append_little_endian(std::string& to, Number value) {
+  for (std::size_t i = 0; i < sizeof(Number); ++i)
+    to += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xff);
+}
+
+/// Numbers in 65535 steps of a range, deflated, in base64: little-endian, 65535 for NaN.
+[[nodiscard]] inline std::string packed(std::span<const float> values, const range& r) {
+  std::string bytes;
+  bytes.reserve(2 * values.size());
+  for (const float v : values)
+    append_little_endian(bytes, step_of<std::uint16_t>(static_cast<double>(v), r));
+  return base64(deflated(bytes));
+}
+
+inline std::string base64(std::string_view bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < n ? static_cast<std::uint8_t>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+inline std::string deflated(std::string_view bytes) {
+  constexpr int level = 3;  // half the time of 6, a few percent larger
+  auto size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string out(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()),
+                               static_cast<uLong>(bytes.size()), level);
+  if (status != Z_OK) throw error(message("report::deflated: zlib says ", status));
+  out.resize(size);
+  return out;
+}
+
+}  // namespace aib::report
+#endif
+
+// aib/report/packed_depth.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::report {
+
+/// A frame's depths and relative errors for a page: width x height bytes a panel, row by row,
+/// deflated, in base64. A byte is 0..254, 255 where there is nothing. Depths are in even steps of
+/// their logarithm from `depths.low` to `depths.high`, errors in even steps of `errors`.
+struct packed_frame {
+  std::size_t width;
+  std::size_t height;
+  range depths;
+  range errors;
+  std::string estimate;
+  std::string reference;
+  std::string error;  ///< (estimate - reference) / reference
+};
+
+/// Every k-th pixel, so that at most `width` columns are left. What counts, and the ranges, are
+/// those of depth::error_image. Throws as that does.
+[[nodiscard]] packed_frame packed(const depth::depth_map& estimate,
+                                  const depth::depth_map& reference,
+                                  const depth::error_image_options& options,
+                                  std::size_t width);
+
+namespace detail {
+
+template <class Scale>
+std::string packed_panel(const raster::image<double>& panel,
+                         std::size_t stride,
+                         const range& r,
+                         Scale scale) {
+  std::string bytes;
+  for (std::size_t y = stride / 2; y < panel.height(); y += stride)
+    for (std::size_t x = stride / 2; x < panel.width(); x += stride)
+      bytes += static_cast<char>(step_of<std::uint8_t>(scale(panel(x, y)), r));
+  return base64(deflated(bytes));
+}
+
+/// Pixels that every `stride`-th of n is, from the middle of the first.
+inline std::size_t n_kept(std::size_t n, std::size_t stride) {
+  return n > stride / 2 ? (n - stride / 2 - 1) / stride + 1 : 0;
+}
+
+}  // namespace detail
+
+inline packed_frame packed(const depth::depth_map& estimate,
+                           const depth::depth_map& reference,
+                           const depth::error_image_options& options,
+                           std::size_t width) {
+  const auto frame =
+      depth::measure(estimate.values.view(), reference.values.view(), options.errors);
+  (void)depth::summarize(frame.sums);  // throws where there is nothing to show
+  const auto panels =
+      depth::detail::panels_of(estimate, reference, options.errors, frame.transform);
+  const auto depths = depth::detail::depth_range(panels, options);
+  const auto errors = depth::detail::error_range(panels, options);
+  const std::size_t columns = panels.relative.width(), rows = panels.relative.height();
+  const std::size_t stride =
+      std::max<std::size_t>(1, (columns + width - 1) / std::max(width, std::size_t{1}));
+  const range log_depths{std::log(depths.low), std::log(depths.high)};
+  const auto log = [](double d) { return std::log(d); };
+  const auto same = [](double e) { return e; };
+  return {detail::n_kept(columns, stride),
+          detail::n_kept(rows, stride),
+          {depths.low, depths.high},
+          {errors.low, errors.high},
+          detail::packed_panel(panels.estimate, stride, log_depths, log),
+          detail::packed_panel(panels.reference, stride, log_depths, log),
+          detail::packed_panel(panels.relative, stride, {errors.low, errors.high}, same)};
+}
+
+}  // namespace aib::report
+#endif
+
+// aib/report/packed_points.hpp
+
+#if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
+namespace aib::report {
+
+/// Some points of a cloud, one a voxel, that stand for all of it in a picture.
+struct thinned {
+  std::vector<std::size_t> index;  ///< of the points that are kept, ascending
+  double voxel = 0;                ///< edge of the voxels; 0: every finite point is kept
+};
+
+/// At most `limit` points: the first in each voxel, of the smallest voxels that are few enough (to
+/// a quarter of their edge).
+[[nodiscard]] thinned thin(const cloud::cloud& points, std::size_t limit);
+
+/// Positions in 65535 steps of the box on each axis: x, y, z a point, deflated, in base64.
+struct packed_positions {
+  cloud::box box;
+  std::string data;
+};
+
+[[nodiscard]] packed_positions packed(const cloud::cloud& points,
+                                      std::span<const std::size_t> index);
+[[nodiscard]] packed_positions packed(const mesh::mesh& m);
+
+/// Indices of a mesh's vertices, three a triangle, 32 bits little-endian, deflated, in base64.
+[[nodiscard]] inline std::string packed_triangles(const mesh::mesh& m) {
+  std::string bytes;
+  for (const auto& triangle : m.triangles)
+    for (const std::uint32_t vertex : triangle) append_little_endian(bytes, vertex);
+  return base64(deflated(bytes));
+}
+
+namespace detail {
+
+inline std::vector<std::size_t> finite_points(const cloud::cloud& points) {
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.points[i].allFinite()) index.push_back(i);
+  return index;
+}
+
+/// The first point in each voxel; nothing where there are more than `limit` of them.
+inline std::optional<std::vector<std::size_t>> first_of_voxels(const cloud::cloud& points,
+                                                               std::span<const std::size_t> finite,
+                                                               const cloud::box& box,
+                                                               double voxel,
+                                                               std::size_t limit) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> cells;
+  cells.reserve(finite.size());
+  for (const std::size_t i : finite) {
+    const Eigen::Vector3d c = (points.position(i) - box.low) / voxel;
+    const auto bits = [](double x) { return static_cast<std::uint64_t>(x) & 0x1fffff; };
+    cells.emplace_back(bits(c.x()) | bits(c.y()) << 21 | bits(c.z()) << 42, i);
+  }
+  std::sort(cells.begin(), cells.end());
+  const auto same_cell = [](const auto& a, const auto& b) { return a.first == b.first; };
+  cells.erase(std::unique(cells.begin(), cells.end(), same_cell), cells.end());
+  if (cells.size() > limit) return std::nullopt;
+  std::vector<std::size_t> index;
+  index.reserve(cells.size());
+  for (const auto& cell : cells) index.push_back(cell.second);
+  std::sort(index.begin(), index.end());
+  return index;
+}
+
+inline void append_position(std::string& bytes, const Eigen::Vector3d& p, const cloud::box& box) {
+  for (int axis = 0; axis < 3; ++axis)
+    append_little_endian(bytes, step_of<std::uint16_t>(p[axis], {box.low[axis], box.high[axis]}));
+}
+
+}  // namespace detail
+
+inline thinned thin(const cloud::cloud& points, std::size_t limit) {
+  if (limit == 0) throw argument_error("report::thin: limit > 0 expected");
+  std::vector<std::size_t> finite = detail::finite_points(points);
+  if (finite.size() <= limit) return {std::move(finite), 0};
+  const cloud::box box = cloud::bounds(points);
+  // 21 bits an axis hold 2 million voxels.
+  double voxel = box.size().maxCoeff() / std::min(2e6, std::sqrt(static_cast<double>(limit)));
+  auto kept = detail::first_of_voxels(points, finite, box, voxel, limit);
+  for (; !kept; kept = detail::first_of_voxels(points, finite, box, voxel, limit)) voxel *= 1.25;
+  return {std::move(*kept), voxel};
+}
+
+inline packed_positions packed(const cloud::cloud& points, std::span<const std::size_t> index) {
+  packed_positions p;
+  for (const std::size_t i : index) p.box.add(points.position(i));
+  std::string bytes;
+  for (const std::size_t i : index) detail::append_position(bytes, points.position(i), p.box);
+  p.data = base64(deflated(bytes));
+  return p;
+}
+
+inline packed_positions packed(const mesh::mesh& m) {
+  packed_positions p{cloud::bounds(m.vertices, m.origin), {}};
+  std::string bytes;
+  for (std::size_t i = 0; i < m.vertices.size(); ++i)
+    detail::append_position(bytes, m.position(i), p.box);
+  p.data = base64(deflated(bytes));
+  return p;
+}
+
+}  // namespace aib::report
+#endif
+
 // aib/sample/eliminate.hpp
 
 namespace aib::sample {
@@ -22169,3 +24377,1484 @@ inline void demand_points(const tiled_cloud& c, const char* which, const cloud_f
 
 }  // namespace AIB_ISA
 }  // namespace aib::stream
+
+// aib/survey/sensor_noise.hpp
+
+namespace aib::survey {
+
+/// How the numbers of an image stand for light.
+enum class transfer {
+  srgb,    ///< IEC 61966-2-1, as PNG and JPEG pictures are
+  linear,  ///< in proportion
+};
+
+struct sensor_noise_options {
+  /// Of light x in 0..1 (1 is the full scale of the sensor) the noise has the variance a x + b.
+  double a = 2e-4;  ///< share of shot noise: the full scale is 1 / a electrons
+  double b = 2e-6;  ///< variance of the reading: its root is the noise in the dark
+  std::uint64_t seed = 1;
+  std::uint64_t frame = 0;  ///< frames differ by it, whatever their order
+  survey::transfer transfer = transfer::srgb;
+  unsigned threads = 0;  ///< 0: all
+};
+
+/// Light of an sRGB number, both in 0..1.
+[[nodiscard]] inline double linear_of_srgb(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+/// sRGB number of light, both in 0..1.
+[[nodiscard]] inline double srgb_of_linear(double x) {
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+/// A number of a Poisson distribution, of any mean >= 0.
+///
+/// Below 30 by inversion; above by the rejection method PTRS.
+/// Source: Hoermann, "The transformed rejection method for generating Poisson random variables",
+/// Insurance: Mathematics and Economics 12, 1993.
+[[nodiscard]] inline double poisson(random_engine& random, double mean) {
+  if (!(mean > 0)) return 0;
+  if (mean < 30) {
+    double left = std::exp(-mean), k = 0;
+    for (double u = random.uniform(); u > left && k < 1000; ++k) {
+      u -= left;
+      left *= mean / (k + 1);
+    }
+    return k;
+  }
+  const double log_mean = std::log(mean), b = 0.931 + 2.53 * std::sqrt(mean);
+  const double a = -0.059 + 0.02483 * b, inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+  const double v_r = 0.9277 - 3.6224 / (b - 2);
+  for (;;) {
+    const double u = random.uniform() - 0.5, v = 1 - random.uniform();
+    const double us = 0.5 - std::abs(u);
+    const double k = std::floor((2 * a / us + b) * u + mean + 0.43);
+    if (us >= 0.07 && v <= v_r) return k;
+    if (k < 0 || (us < 0.013 && v > us)) continue;
+    const double bound = k * log_mean - mean - std::lgamma(k + 1);
+    if (std::log(v * inverse_alpha / (a / (us * us) + b)) <= bound) return k;
+  }
+}
+
+/// Light as a sensor measures it: a Poisson(x / a) + N(0, b), clipped to 0..1.
+/// Source: Foi, Trimeche, Katkovnik, Egiazarian, "Practical Poissonian-Gaussian noise modeling and
+/// fitting for single-image raw-data", IEEE TIP 17, 2008, Eqs. (1) to (3) and (31).
+[[nodiscard]] inline double measured_light(double x, double a, double b, random_engine& random) {
+  const double shot = a > 0 ? a * poisson(random, x / a) : x;
+  const double read = b > 0 ? std::sqrt(b) * random.normal() : 0;
+  return std::clamp(shot + read, 0.0, 1.0);
+}
+
+/// An image with the noise of a sensor: colours of 8 or 16 bits, or gray. Noise is added to light,
+/// each channel for itself, and what comes out is rounded.
+///
+/// The noise of a pixel depends on seed, frame, place and light alone: not on the order of frames
+/// or the number of threads. Throws argument_error unless a and b are finite and >= 0.
+template <class Pixel>
+[[nodiscard]] raster::image<Pixel> sensor_noise(raster::view<const Pixel> image,
+                                                const sensor_noise_options& options = {});
+
+namespace detail {
+
+template <std::unsigned_integral T>
+T noisy_number(T value, const sensor_noise_options& o, random_engine& random) {
+  constexpr double full = std::numeric_limits<T>::max();
+  const double stored = static_cast<double>(value) / full;
+  const bool srgb = o.transfer == transfer::srgb;
+  const double light = measured_light(srgb ? linear_of_srgb(stored) : stored, o.a, o.b, random);
+  return static_cast<T>(std::nearbyint(full * (srgb ? srgb_of_linear(light) : light)));
+}
+
+template <class T, std::size_t N>
+std::array<T, N> noisy_number(const std::array<T, N>& pixel,
+                              const sensor_noise_options& o,
+                              random_engine& random) {
+  std::array<T, N> out;
+  for (std::size_t k = 0; k < N; ++k) out[k] = noisy_number(pixel[k], o, random);
+  return out;
+}
+
+}  // namespace detail
+
+template <class Pixel>
+raster::image<Pixel> sensor_noise(raster::view<const Pixel> image,
+                                  const sensor_noise_options& options) {
+  if (!(options.a >= 0) || !(options.b >= 0) || !std::isfinite(options.a + options.b)) {
+    throw argument_error(message("survey::sensor_noise: a and b from 0 expected, found ", options.a,
+                                 " and ", options.b));
+  }
+  raster::image<Pixel> noisy(image.width, image.height);
+  const std::uint64_t of_frame = random_bits(options.seed, options.frame);
+  for_each_chunk(image.height, 16, options.threads, {}, [&](const chunk& c) {
+    for (std::size_t y = c.begin; y < c.end; ++y) {
+      for (std::size_t x = 0; x < image.width; ++x) {
+        random_engine random(random_bits(of_frame, y * image.width + x));
+        noisy(x, y) = detail::noisy_number(image(x, y), options, random);
+      }
+    }
+  });
+  return noisy;
+}
+
+}  // namespace aib::survey
+
+// aib/stream/noisy_image.hpp
+
+namespace aib::stream {
+
+/// Adds the noise of a sensor to a picture and writes it as PNG. A PNG of 16 bits stays one; all
+/// others have 8. Throws as io::read_image, io::write_image and survey::sensor_noise do.
+inline void noisy_image(const std::filesystem::path& from,
+                        const std::filesystem::path& to,
+                        const survey::sensor_noise_options& options = {}) {
+#if defined(AIB_WITH_PNG)
+  if (io::kind_of(from) == io::file_kind::png && io::read_png_header(from).bits == 16) {
+    using deep = std::array<std::uint16_t, 3>;
+    const auto picture = io::read_png_color16(from);
+    return io::write_image<deep>(to, survey::sensor_noise<deep>(picture.view(), options));
+  }
+#endif
+  const raster::color_image picture = io::read_image(from);
+  io::write_image<raster::rgb>(to, survey::sensor_noise<raster::rgb>(picture.view(), options));
+}
+
+}  // namespace aib::stream
+
+// aib/stream/render_frames.hpp
+
+namespace aib::stream {
+
+/// What is written of each frame.
+enum class render_map {
+  depth,    ///< depth/NAME.exr, planar, float, 0 where nothing is seen
+  range,    ///< range/NAME.exr
+  normals,  ///< normals/NAME.npy, h x w x 3 floats in the camera
+  labels,   ///< labels/NAME.png, 16 bits
+};
+
+/// What is done with files that are there.
+enum class existing_files { replace, keep };
+
+struct render_frames_options {
+  std::vector<render_map> maps = {render_map::depth};
+  std::size_t width = 0, height = 0;  ///< of the maps; 0: those of the camera
+  existing_files existing = existing_files::replace;
+  std::uint16_t background = 65535;  ///< label where nothing is seen
+  unsigned threads = 0;              ///< 0: all
+  aib::control control = {};
+};
+
+struct rendered_frames {
+  std::size_t n_frames = 0;                       ///< that were cast
+  std::size_t n_kept = 0;                         ///< whose files were all there
+  std::vector<std::filesystem::path> files = {};  ///< in the order of the frames
+};
+
+namespace detail {
+
+/// The file of a map of a frame. The name loses its extension and keeps its folders.
+inline std::filesystem::path file_of(const std::filesystem::path& folder,
+                                     render_map map,
+                                     const std::string& name) {
+  struct kind {
+    const char* folder;
+    const char* extension;
+  };
+  constexpr kind kinds[] = {
+      {"depth", ".exr"}, {"range", ".exr"}, {"normals", ".npy"}, {"labels", ".png"}};
+  const kind& k = kinds[static_cast<std::size_t>(map)];
+  const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
+  const bool inside = relative.is_relative() && *relative.begin() != ".." && !name.empty();
+  if (!inside)
+    throw argument_error(message("stream::render_frames: '", name, "' is no name of an image"));
+  return (folder / k.folder / relative).replace_extension(k.extension);
+}
+
+inline void write_normals(const std::filesystem::path& path,
+                          const raster::image<Eigen::Vector3f>& normals) {
+  const std::span values(normals.data()->data(), 3 * normals.size());
+  io::write_npy(path, io::make_array<float>({normals.height(), normals.width(), 3}, values));
+}
+
+inline void write_map(const std::filesystem::path& path, render_map map, const render::frame& f) {
+  std::filesystem::create_directories(path.parent_path());
+  switch (map) {
+    case render_map::depth:
+      return io::write_depth(path, f.depth.values, {});
+    case render_map::range:
+      return io::write_depth(path, f.range.values, {});
+    case render_map::normals:
+      return write_normals(path, f.normals);
+    case render_map::labels:
+      return io::write_image<std::uint16_t>(path, f.labels);
+  }
+}
+
+inline bool same(const math::camera& a, const math::camera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         a.parameters == b.parameters;
+}
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Renders the frames of a trajectory into a folder, as many at a time as there are threads. Files
+/// are written whole or not at all, so that a stopped run can be taken up with
+/// `existing_files::keep`. The same bytes for any number of threads.
+///
+/// cameras   one a pose, or one for all
+///
+/// Poses that are not registered are left out. Throws argument_error where there are no names or
+/// the cameras do not fit, io_error where a file cannot be written.
+inline rendered_frames render_frames(const mesh::ray_surface& surface,
+                                     const pose::trajectory& poses,
+                                     std::span<const math::camera> cameras,
+                                     const std::filesystem::path& folder,
+                                     const render_frames_options& options = {}) {
+  if (poses.names.size() != poses.size() ||
+      (cameras.size() != 1 && cameras.size() != poses.size())) {
+    throw argument_error(message("stream::render_frames: ", poses.size(), " poses, ",
+                                 poses.names.size(), " names, ", cameras.size(),
+                                 " cameras: a name a pose and one camera or one a pose expected"));
+  }
+  rendered_frames done;
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses.world_from_camera[i].is_finite()) continue;
+    bool all_there = options.existing == existing_files::keep;
+    for (const render_map map : options.maps) {
+      done.files.push_back(detail::file_of(folder, map, poses.names[i]));
+      all_there = all_there && std::filesystem::exists(done.files.back());
+    }
+    all_there ? void(++done.n_kept) : wanted.push_back(i);
+  }
+  done.n_frames = wanted.size();
+  if (wanted.empty()) return done;
+  const bool one_camera = std::all_of(cameras.begin(), cameras.end(), [&](const math::camera& c) {
+    return detail::same(c, cameras.front());
+  });
+  std::optional<render::view_rays> shared;
+  if (one_camera) shared.emplace(cameras.front(), options.width, options.height, options.threads);
+  for_each_chunk(wanted.size(), 1, options.threads, options.control, [&](const chunk& c) {
+    const std::size_t i = wanted[c.index];
+    const render::frame_options how{.background = options.background, .cast = {.threads = 1}};
+    const auto cast = [&](const render::view_rays& rays) {
+      return render::cast_frame(surface, rays, poses.world_from_camera[i], how);
+    };
+    const render::frame f =
+        shared ? cast(*shared)
+               : cast(render::view_rays(cameras[i], options.width, options.height, 1));
+    for (const render_map map : options.maps)
+      detail::write_map(detail::file_of(folder, map, poses.names[i]), map, f);
+  });
+  return done;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::stream
+
+// aib/survey/lens.hpp
+
+namespace aib::survey {
+
+/// A camera as its data sheet tells it; the defaults are the paper's.
+struct lens {
+  double focal_mm = 50;
+  double sensor_mm = 36;  ///< width of the sensor
+  std::uint64_t width = 1920;
+  std::uint64_t height = 1080;
+};
+
+/// The pinhole camera of a lens: square pixels, the principal point in the middle.
+/// Throws argument_error where something is not positive.
+[[nodiscard]] inline math::camera camera_of(const lens& l) {
+  if (!(l.focal_mm > 0) || !(l.sensor_mm > 0) || l.width == 0 || l.height == 0) {
+    throw argument_error(message("survey::camera_of: focal length, sensor and size above 0 ",
+                                 "expected, found ", l.focal_mm, " mm, ", l.sensor_mm, " mm, ",
+                                 l.width, "x", l.height));
+  }
+  const auto w = static_cast<double>(l.width), h = static_cast<double>(l.height);
+  const double f = l.focal_mm / l.sensor_mm * w;
+  return math::pinhole(l.width, l.height, f, f, w / 2, h / 2);
+}
+
+/// The part of a wall that a camera sees when it looks straight at it.
+struct wall_frame {
+  double width, height;
+};
+[[nodiscard]] inline wall_frame frame_on_wall(const math::camera& c, double stand_off) {
+  return {stand_off * static_cast<double>(c.width) / c.fx(),
+          stand_off * static_cast<double>(c.height) / c.fy()};
+}
+
+/// Ground sampling distance: the size of a pixel on a wall at a distance, in the unit of that.
+[[nodiscard]] inline double ground_sampling(const math::camera& c, double stand_off) {
+  return stand_off / c.fx();
+}
+
+}  // namespace aib::survey
+
+// aib/survey/flight_path.hpp
+
+namespace aib::survey {
+
+/// Attitude of a camera that looks along `forward`, the image's up as near to `up` as may be. Where
+/// the two are parallel, x (else y) of the world takes the place of `up`.
+[[nodiscard]] inline Eigen::Matrix3d looking(const Eigen::Vector3d& forward,
+                                             const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
+  const Eigen::Vector3d ahead = forward.normalized();
+  Eigen::Vector3d right = ahead.cross(up.normalized());
+  if (!(right.norm() > 1e-6)) right = ahead.cross(Eigen::Vector3d::UnitX());
+  if (!(right.norm() > 1e-6)) right = ahead.cross(Eigen::Vector3d::UnitY());
+  right.normalize();
+  Eigen::Matrix3d attitude;
+  attitude << right, ahead.cross(right), ahead;
+  return attitude;
+}
+
+/// A piece of a path: a line, an arc or a helix, on which the camera turns evenly.
+///
+/// At a share u the camera is at centre + R(u angle about axis) arm + u shift.
+struct leg {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of unit length
+  double angle = 0;                                 ///< radians
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();  ///< world from camera, at the beginning
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();          ///< axis times angle, over the leg
+
+  [[nodiscard]] math::rigid3 at(double share) const {
+    const Eigen::Vector3d swing = share * angle * axis, part = share * turn;
+    return {math::rotation_from(part) * attitude,
+            centre + math::rotation_from(swing) * arm + share * shift};
+  }
+  [[nodiscard]] double length() const {
+    return std::hypot(angle * (arm - axis.dot(arm) * axis).norm(), shift.norm());
+  }
+  [[nodiscard]] leg reversed() const {
+    const math::rigid3 end = at(1);
+    const Eigen::Vector3d swing = angle * axis;
+    return {centre + shift, math::rotation_from(swing) * arm, axis, -angle, -shift, end.rotation,
+            -turn};
+  }
+};
+
+/// A straight leg between two poses.
+[[nodiscard]] inline leg line(const math::rigid3& from, const math::rigid3& to) {
+  leg l;
+  l.centre = from.translation;
+  l.shift = to.translation - from.translation;
+  l.attitude = from.rotation;
+  l.turn = math::axis_angle_from(to.rotation * from.rotation.transpose());
+  return l;
+}
+
+/// An arc on which the camera keeps its attitude to the axis.
+[[nodiscard]] inline leg arc(const math::rigid3& from,
+                             const Eigen::Vector3d& centre,
+                             const Eigen::Vector3d& axis,
+                             double angle) {
+  leg l;
+  l.centre = centre;
+  l.arm = from.translation - centre;
+  l.axis = axis.normalized();
+  l.angle = angle;
+  l.attitude = from.rotation;
+  l.turn = angle * l.axis;
+  return l;
+}
+
+/// Where a camera flies and looks, before frames are placed on it.
+struct flight_path {
+  std::vector<leg> legs = {};
+  math::camera camera = {};
+  double stand_off = 0;       ///< planned distance to the surface
+  double overlap_across = 1;  ///< of neighbouring rows as planned; 1 where there is one row
+  std::size_t n_rows = 1;
+  bool is_closed = false;  ///< the end is the beginning: the last frame comes before it
+
+  [[nodiscard]] double length() const {
+    double sum = 0;
+    for (const leg& l : legs) sum += l.length();
+    return sum;
+  }
+  /// The pose at a share of the length.
+  [[nodiscard]] math::rigid3 at(double share) const {
+    if (legs.empty()) throw argument_error("survey::flight_path: an empty path");
+    double left = std::clamp(share, 0.0, 1.0) * length();
+    for (const leg& l : legs) {
+      const double n = l.length();
+      if (left <= n && n > 0) return l.at(left / n);
+      left -= n;
+    }
+    return legs.back().at(1);
+  }
+  [[nodiscard]] flight_path reversed() const {
+    flight_path back = *this;
+    back.legs.clear();
+    for (auto l = legs.rbegin(); l != legs.rend(); ++l) back.legs.push_back(l->reversed());
+    return back;
+  }
+};
+
+/// Adds a leg from the path's end to a pose; none where they are the same place.
+inline void go_to(flight_path& path, const math::rigid3& to) {
+  if (path.legs.empty()) return;
+  const leg way = line(path.legs.back().at(1), to);
+  if (way.length() > 1e-9) path.legs.push_back(way);
+}
+
+/// What every path is planned with.
+struct path_options {
+  math::camera camera = camera_of({});
+  double stand_off = 0;         ///< distance to the surface, above 0
+  double overlap_across = 0.8;  ///< of neighbouring rows, 0 .. 1
+  double pitch = 0;             ///< radians, positive looks down
+};
+
+/// Throws argument_error where an option is out of its range.
+inline void check(const path_options& o) {
+  if (!(o.stand_off > 0) || !std::isfinite(o.stand_off))
+    throw argument_error(message("survey: a stand-off above 0 expected, found ", o.stand_off));
+  if (!(o.overlap_across >= 0 && o.overlap_across < 1)) {
+    throw argument_error(
+        message("survey: an overlap of 0 to below 1 expected, found ", o.overlap_across));
+  }
+  if (!(std::abs(o.pitch) < 1.5))
+    throw argument_error("survey: a pitch between -86 and 86 degrees expected");
+}
+
+/// Places of rows: offsets of frames of an extent that cover a range with at least an overlap.
+struct row_places {
+  std::vector<double> offset;
+  double overlap = 1;  ///< as it comes out; 1 where there is one row
+};
+[[nodiscard]] inline row_places place_rows(double low, double high, double extent, double overlap) {
+  const double free = high - low - extent;
+  if (!(free > 1e-9 * extent)) return {{(low + high) / 2}, 1};
+  const double n = std::ceil(free / ((1 - overlap) * extent) - 1e-9);
+  if (!(n < 1e6)) throw argument_error("survey: more than a million rows");
+  row_places rows{{}, 1 - free / n / extent};
+  for (double i = 0; i <= n; ++i) rows.offset.push_back(low + extent / 2 + i / n * free);
+  return rows;
+}
+
+/// Paths one after another, joined by straight legs on which the view turns evenly. Camera and
+/// stand-off are those of the first, the overlap the least of all.
+[[nodiscard]] inline flight_path join(const std::vector<flight_path>& paths) {
+  if (paths.empty()) throw argument_error("survey::join: at least one path expected");
+  flight_path all = paths.front();
+  if (paths.size() > 1) all.is_closed = false;
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    const flight_path& next = paths[i];
+    if (next.legs.empty()) continue;
+    go_to(all, next.legs.front().at(0));
+    all.legs.insert(all.legs.end(), next.legs.begin(), next.legs.end());
+    all.overlap_across = std::min(all.overlap_across, next.overlap_across);
+    all.n_rows += next.n_rows;
+  }
+  return all;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/footprint.hpp
+
+namespace aib::survey {
+
+/// The ground plan of a building: a convex polygon, anticlockwise from above, and its heights.
+struct footprint {
+  std::vector<Eigen::Vector2d> corners;
+  double low = 0, high = 0;
+};
+
+/// Labels of a mesh by their names. Throws argument_error for a name that it has not.
+[[nodiscard]] inline std::vector<std::uint32_t> labels_of(const std::vector<std::string>& known,
+                                                          const std::vector<std::string>& names) {
+  std::vector<std::uint32_t> labels;
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      std::string list;
+      for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+      throw argument_error(message("survey: no label '", name, "' in the mesh, which has ", list));
+    }
+    labels.push_back(static_cast<std::uint32_t>(found - known.begin()));
+  }
+  return labels;
+}
+
+/// Whether a label is one of some; all are where none is named.
+[[nodiscard]] inline bool is_among(std::uint32_t label, const std::vector<std::uint32_t>& labels) {
+  return labels.empty() || std::find(labels.begin(), labels.end(), label) != labels.end();
+}
+
+/// Twice the area of the triangle a, b, c, positive where it turns to the left.
+[[nodiscard]] inline double turn_of(const Eigen::Vector2d& a,
+                                    const Eigen::Vector2d& b,
+                                    const Eigen::Vector2d& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// The convex hull, anticlockwise. Source: Andrew, "Another efficient algorithm for convex hulls in
+/// two dimensions", 1979.
+[[nodiscard]] inline std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  };
+  std::sort(points.begin(), points.end(), before);
+  std::vector<Eigen::Vector2d> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const Eigen::Vector2d& p : points) {
+      while (hull.size() > first + 1 && turn_of(hull[hull.size() - 2], hull.back(), p) <= 0)
+        hull.pop_back();
+      hull.push_back(p);
+    }
+    if (!hull.empty()) hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+/// Hull and heights of the faces of a mesh with some labels; no label: all faces.
+/// Throws undefined_error where nothing is left, or no area.
+[[nodiscard]] inline footprint footprint_of(const mesh::mesh& m,
+                                            const std::vector<std::uint32_t>& labels = {}) {
+  footprint f{{}, HUGE_VAL, -HUGE_VAL};
+  std::vector<Eigen::Vector2d> points;
+  const bool labelled = m.labels.size() == m.triangles.size();
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+    if (!labels.empty() && !(labelled && is_among(m.labels[t], labels))) continue;
+    for (const std::uint32_t v : m.triangles[t]) {
+      const Eigen::Vector3d p = m.position(v);
+      if (!p.allFinite()) continue;
+      points.push_back(p.head<2>());
+      f.low = std::min(f.low, p.z());
+      f.high = std::max(f.high, p.z());
+    }
+  }
+  f.corners = convex_hull(std::move(points));
+  if (f.corners.size() < 3)
+    throw undefined_error("survey::footprint_of: no faces with these labels that cover an area");
+  return f;
+}
+
+/// The corners anticlockwise. Throws argument_error unless they are three or more that make a
+/// convex polygon.
+[[nodiscard]] inline std::vector<Eigen::Vector2d> anticlockwise(
+    std::vector<Eigen::Vector2d> corners) {
+  const std::size_t n = corners.size();
+  double area = 0;
+  for (std::size_t i = 0; i < n; ++i) area += turn_of({0, 0}, corners[i], corners[(i + 1) % n]);
+  if (n < 3 || !(std::abs(area) > 0) || !std::isfinite(area))
+    throw argument_error("survey: a footprint of three corners or more and an area expected");
+  if (area < 0) std::reverse(corners.begin(), corners.end());
+  for (std::size_t i = 0; i < n; ++i) {
+    if (turn_of(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) < 0) {
+      throw argument_error(message("survey: the footprint turns inwards at (",
+                                   corners[(i + 1) % n].x(), ", ", corners[(i + 1) % n].y(),
+                                   "): a convex one expected, or a path of your own"));
+    }
+  }
+  return corners;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/facade.hpp
+
+namespace aib::survey {
+
+/// Edges of a footprint that are flown along, from `first` to `last`; edge i goes from corner i to
+/// the next.
+struct side_range {
+  std::size_t first, last;
+};
+
+struct facade_options {
+  path_options path = {};
+  std::optional<side_range> sides = {};  ///< all of them, closed, where none is told
+};
+
+/// Rows round a building, flown to and fro from the lowest up (a serpentine): along the walls at
+/// the stand-off, in arcs round the corners, looking along the inward normal, which turns without a
+/// jump. The frames of the rows cover the footprint's heights.
+///
+/// Throws argument_error where the footprint is not convex or an option is out of its range.
+[[nodiscard]] flight_path facade(const footprint& plan, const facade_options& options);
+
+namespace detail {
+
+/// Unit vector along an edge, level.
+inline Eigen::Vector3d along_edge(const std::vector<Eigen::Vector2d>& corners, std::size_t i) {
+  const Eigen::Vector2d d = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
+  return {d.x(), d.y(), 0};
+}
+
+/// One row at height 0, the way round.
+inline std::vector<leg> ring(const std::vector<Eigen::Vector2d>& corners,
+                             const side_range& sides,
+                             const path_options& options) {
+  const std::size_t n = corners.size();
+  const std::size_t n_sides = (sides.last + n - sides.first) % n + 1;
+  std::vector<leg> legs;
+  for (std::size_t k = 0; k < n_sides; ++k) {
+    const std::size_t i = (sides.first + k) % n;
+    const Eigen::Vector3d along = along_edge(corners, i);
+    const Eigen::Vector3d inwards(-along.y(), along.x(), 0);
+    const Eigen::Vector3d view =
+        std::cos(options.pitch) * inwards - std::sin(options.pitch) * Eigen::Vector3d::UnitZ();
+    const auto beside = [&](std::size_t corner) -> Eigen::Vector3d {
+      const Eigen::Vector2d& c = corners[corner % n];
+      return Eigen::Vector3d(c.x(), c.y(), 0) - options.stand_off * inwards;
+    };
+    const Eigen::Matrix3d attitude = looking(view);
+    legs.push_back(line({attitude, beside(i)}, {attitude, beside(i + 1)}));
+    const bool last = k + 1 == n_sides;
+    if (last && n_sides < n) continue;
+    const Eigen::Vector3d next = along_edge(corners, (i + 1) % n);
+    const double angle = std::atan2(along.cross(next).z(), along.dot(next));
+    const Eigen::Vector2d& c = corners[(i + 1) % n];
+    if (angle > 1e-12)
+      legs.push_back(
+          arc({attitude, beside(i + 1)}, {c.x(), c.y(), 0}, Eigen::Vector3d::UnitZ(), angle));
+  }
+  return legs;
+}
+
+/// Rows of a flight at heights, each the other way than the one before.
+inline flight_path serpentine(flight_path row, const row_places& rows, double rise) {
+  flight_path path = row;
+  path.legs.clear();
+  path.n_rows = rows.offset.size();
+  path.overlap_across = rows.overlap;
+  path.is_closed = row.is_closed && path.n_rows == 1;
+  for (const double z : rows.offset) {
+    flight_path at_height = row;
+    for (leg& l : at_height.legs) l.centre.z() += z + rise;
+    go_to(path, at_height.legs.front().at(0));
+    path.legs.insert(path.legs.end(), at_height.legs.begin(), at_height.legs.end());
+    row = row.reversed();
+  }
+  return path;
+}
+
+}  // namespace detail
+
+inline flight_path facade(const footprint& plan, const facade_options& options) {
+  check(options.path);
+  if (!(plan.low <= plan.high)) {
+    throw argument_error(message("survey::facade: heights from low to high expected, found ",
+                                 plan.low, " to ", plan.high));
+  }
+  const auto corners = anticlockwise(plan.corners);
+  const std::size_t n = corners.size();
+  const side_range sides = options.sides.value_or(side_range{0, n - 1});
+  if (sides.first >= n || sides.last >= n)
+    throw argument_error(message("survey::facade: the footprint has ", n, " sides"));
+  flight_path row{.camera = options.path.camera,
+                  .stand_off = options.path.stand_off,
+                  .is_closed = (sides.last + 1) % n == sides.first};
+  row.legs = detail::ring(corners, sides, options.path);
+  const double height = frame_on_wall(row.camera, row.stand_off).height;
+  return detail::serpentine(row,
+                            place_rows(plan.low, plan.high, height, options.path.overlap_across),
+                            row.stand_off * std::tan(options.path.pitch));
+}
+
+}  // namespace aib::survey
+
+// aib/survey/fly.hpp
+
+namespace aib::survey {
+
+/// What happens to poses that are too near to the mesh.
+enum class clearance_rule {
+  push,    ///< they are moved away
+  refuse,  ///< the plan is
+};
+
+/// Where the camera looks.
+enum class aim_rule {
+  path,    ///< as the path says
+  normal,  ///< along the normal of the surface that it would see, where it sees one
+};
+
+/// What a flight keeps away from and looks at.
+struct flight_space {
+  const mesh::surface_index& distance;  ///< for the distance
+  const mesh::ray_surface& sight;       ///< for the aim
+};
+
+struct fly_options {
+  double overlap = 0.8;                    ///< of frames along the path, 0 .. 1
+  std::optional<std::size_t> frames = {};  ///< instead: exactly as many
+  double min_distance = 0;                 ///< to the mesh; 0: nobody looks
+  clearance_rule clearance = clearance_rule::push;
+  aim_rule aim = aim_rule::path;
+  double speed = 2;                                    ///< m/s, gives the stamps
+  double gimbal_rate = 60 / math::degrees_per_radian;  ///< radians/s: largest turn of the view
+  /// Name of the image of a frame, counted from 0.
+  std::function<std::string(std::size_t)> name = [](std::size_t i) {
+    const std::string digits = std::to_string(i);
+    return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits + ".png";
+  };
+};
+
+struct flight_plan {
+  pose::trajectory trajectory = {};  ///< with names and stamps
+  math::camera camera = {};
+  double step = 0;            ///< mean distance between frames along the path
+  double overlap = 0;         ///< of neighbouring frames on a wall at the stand-off
+  double overlap_across = 1;  ///< of neighbouring rows, likewise
+  double length = 0;
+  double duration_s = 0;
+  double gsd = 0;  ///< at the stand-off
+  std::size_t n_pushed = 0;
+  double largest_push = 0;
+  std::optional<double> min_distance = {};  ///< of frames and of the way between, to the mesh
+  std::size_t min_distance_frame = 0;       ///< at or behind which that is
+  std::size_t n_gimbal_limited = 0;         ///< frames whose view lags behind
+};
+
+namespace detail {
+
+/// A path measured in frames: how many frame widths, or heights, the image moves.
+class frame_scale {
+ public:
+  explicit frame_scale(const flight_path& path) : path_(path) {
+    const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
+    double sum = 0;
+    for (std::size_t l = 0; l < path.legs.size(); ++l) {
+      for (std::size_t i = 0; i < n_parts; ++i) {
+        parts_.push_back({l, static_cast<double>(i) / n_parts, sum});
+        sum += moved(path.legs[l], i, frame);
+      }
+    }
+    total_ = sum;
+  }
+
+  [[nodiscard]] double total() const { return total_; }
+
+  /// The pose where the image has moved as far.
+  [[nodiscard]] math::rigid3 at(double frames) const {
+    const auto behind = std::upper_bound(parts_.begin() + 1, parts_.end(), frames,
+                                         [](double f, const part& p) { return f < p.begin; });
+    const part& p = *(behind - 1);
+    const double end = behind == parts_.end() ? total_ : behind->begin;
+    const double share = end > p.begin ? (frames - p.begin) / (end - p.begin) : 0;
+    return path_.legs[p.leg].at(p.share + std::clamp(share, 0.0, 1.0) / n_parts);
+  }
+
+ private:
+  static constexpr std::size_t n_parts = 16;
+  struct part {
+    std::size_t leg;
+    double share;
+    double begin;
+  };
+
+  static double moved(const leg& l, std::size_t i, const wall_frame& frame) {
+    const auto share = [](double k) { return k / n_parts; };
+    const auto k = static_cast<double>(i);
+    const Eigen::Matrix3d axes = l.at(share(k + 0.5)).rotation;
+    const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
+    const double straight = way.norm();
+    // A chord is shorter than its arc.
+    const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
+    const double right = std::abs(axes.col(0).dot(way)), down = std::abs(axes.col(1).dot(way));
+    const double ahead = std::abs(axes.col(2).dot(way));
+    return arc * ((right + ahead) / frame.width + down / frame.height);
+  }
+
+  const flight_path& path_;
+  std::vector<part> parts_;
+  double total_ = 0;
+};
+
+/// Keeps away from a mesh.
+class clearance {
+ public:
+  clearance(const mesh::surface_index& surface, double least) : surface_(surface), least_(least) {}
+
+  struct nearest {
+    Eigen::Vector3d point;
+    double distance;
+  };
+  [[nodiscard]] nearest nearest_to(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d in_tree = p - surface_.origin();
+    const Eigen::Vector3f coarse = in_tree.cast<float>();
+    const auto found = surface_.tree().nearest(coarse, 0);
+    const auto on = search::nearest_on_triangle(in_tree, surface_.tree().triangle(found.place));
+    return {on.position + surface_.origin(), (on.position - in_tree).norm()};
+  }
+
+  /// The place nearby that is far enough from everything; nothing where there is none.
+  [[nodiscard]] std::optional<Eigen::Vector3d> pushed(Eigen::Vector3d p) const {
+    for (int round = 0; round < 30; ++round) {
+      const nearest near = nearest_to(p);
+      if (near.distance >= least_) return p;
+      if (!(near.distance > 1e-9)) return std::nullopt;
+      p += (1.02 * least_ - near.distance) / near.distance * (p - near.point);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const mesh::surface_index& surface_;
+  double least_;
+};
+
+/// The direction against the mean normal of the surface in the middle half of an image.
+inline std::optional<Eigen::Vector3d> view_of_surface(const math::rigid3& pose,
+                                                      const math::camera& camera,
+                                                      double stand_off,
+                                                      const mesh::ray_surface& surface) {
+  const wall_frame frame = frame_on_wall(camera, 1);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const double x : {-0.25, 0.0, 0.25}) {
+    for (const double y : {-0.25, 0.0, 0.25}) {
+      const Eigen::Vector3d ray =
+          pose.rotation * Eigen::Vector3d(x * frame.width, y * frame.height, 1).normalized();
+      const auto hit = surface.first_hit(pose.translation, ray, 3 * stand_off);
+      if (!hit) continue;
+      const Eigen::Vector3d normal = surface.normal_at(hit->place);
+      sum += normal.dot(ray) > 0 ? normal : Eigen::Vector3d(-normal);
+    }
+  }
+  const Eigen::Vector3d ahead = pose.rotation.col(2);
+  // A view that would turn by more than 60 degrees belongs to something beside the asset.
+  if (!(sum.norm() > 1e-6) || sum.normalized().dot(ahead) < 0.5) return std::nullopt;
+  return sum.normalized();
+}
+
+/// `to`, or on the way to it as far as an angle from `from`.
+inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
+                                      const Eigen::Matrix3d& to,
+                                      double angle) {
+  const Eigen::Vector3d turn = math::axis_angle_from(to * from.transpose());
+  if (turn.norm() <= angle) return to;
+  const Eigen::Vector3d part = angle / turn.norm() * turn;
+  return math::rotation_from(part) * from;
+}
+
+inline void place_frames(flight_plan& plan, const flight_path& path, const fly_options& options) {
+  const frame_scale scale(path);
+  const double total = scale.total();
+  if (!(total > 0)) throw argument_error("survey::fly: a path of some length expected");
+  double n_steps = 0;
+  if (options.frames) {
+    const std::size_t least = path.is_closed ? 1 : 2;
+    if (*options.frames < least || *options.frames > 10000000)
+      throw argument_error(message("survey::fly: ", least, " to 10 000 000 frames expected"));
+    n_steps = static_cast<double>(*options.frames - (path.is_closed ? 0 : 1));
+  } else {
+    if (!(options.overlap >= 0 && options.overlap < 1))
+      throw argument_error("survey::fly: an overlap of 0 to below 1 expected");
+    n_steps = std::max(1.0, std::ceil(total / (1 - options.overlap) - 1e-9));
+    if (n_steps > 1e7) throw argument_error("survey::fly: more than 10 000 000 frames");
+  }
+  plan.length = path.length();
+  plan.step = plan.length / n_steps;
+  plan.overlap = 1 - total / n_steps;
+  const auto n = static_cast<std::size_t>(n_steps) + (path.is_closed ? 0 : 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    plan.trajectory.world_from_camera.push_back(scale.at(static_cast<double>(i) / n_steps * total));
+    plan.trajectory.names.push_back(options.name(i));
+  }
+}
+
+inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
+  const clearance keep(space.distance, options.min_distance);
+  auto& poses = plan.trajectory.world_from_camera;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Eigen::Vector3d& at = poses[i].translation;
+    const double distance = keep.nearest_to(at).distance;
+    if (distance >= options.min_distance) continue;
+    const auto there = options.clearance == clearance_rule::push ? keep.pushed(at) : std::nullopt;
+    if (!there) {
+      throw undefined_error(message(
+          "survey::fly: ", plan.trajectory.names[i], " at (", at.x(), ", ", at.y(), ", ", at.z(),
+          ") is ", distance, " from the mesh, at least ", options.min_distance, " expected",
+          options.clearance == clearance_rule::push ? "; there is no way out of it nearby" : ""));
+    }
+    ++plan.n_pushed;
+    plan.largest_push = std::max(plan.largest_push, (*there - at).norm());
+    at = *there;
+  }
+  plan.min_distance = HUGE_VAL;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d from = poses[i].translation;
+    const Eigen::Vector3d way = i + 1 < poses.size()
+                                    ? Eigen::Vector3d(poses[i + 1].translation - from)
+                                    : Eigen::Vector3d::Zero();
+    const double n = std::clamp(std::ceil(2 * way.norm() / options.min_distance), 1.0, 1000.0);
+    for (double k = 0; k < n; ++k) {
+      const double distance = keep.nearest_to(from + k / n * way).distance;
+      if (distance >= *plan.min_distance) continue;
+      plan.min_distance = distance;
+      plan.min_distance_frame = i;
+    }
+  }
+  if (options.clearance == clearance_rule::refuse && *plan.min_distance < options.min_distance) {
+    throw undefined_error(message("survey::fly: the way from ",
+                                  plan.trajectory.names[plan.min_distance_frame],
+                                  " to the next frame passes ", *plan.min_distance,
+                                  " from the mesh, at least ", options.min_distance, " expected"));
+  }
+}
+
+inline void aim(flight_plan& plan, const flight_path& path, const flight_space& space) {
+  for (math::rigid3& pose : plan.trajectory.world_from_camera) {
+    const auto view = view_of_surface(pose, path.camera, path.stand_off, space.sight);
+    if (view) pose.rotation = looking(*view, -pose.rotation.col(1));
+  }
+}
+
+inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) {
+  auto& poses = plan.trajectory.world_from_camera;
+  double stamp = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) {
+      const double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
+      const Eigen::Matrix3d reached = turned_at_most(poses[i - 1].rotation, poses[i].rotation,
+                                                     options.gimbal_rate * time + 1e-9);
+      if (reached != poses[i].rotation) ++plan.n_gimbal_limited;
+      poses[i].rotation = reached;
+      stamp += time;
+    }
+    plan.trajectory.stamps_s.push_back(stamp);
+  }
+  plan.duration_s = stamp;
+}
+
+}  // namespace detail
+
+/// Places frames on a path, evenly by what the image moves: exactly `frames`, or as few as keep the
+/// overlap. The views of the frames turn no faster than the gimbal.
+///
+/// space   needed for min_distance and for aim_rule::normal
+///
+/// Throws argument_error where an option is out of its range or the space is missing;
+/// undefined_error where a pose is too near to the mesh and cannot or shall not be pushed.
+[[nodiscard]] inline flight_plan fly(const flight_path& path,
+                                     const fly_options& options = {},
+                                     const flight_space* space = nullptr) {
+  if (!(options.speed > 0) || !(options.gimbal_rate > 0) || !(options.min_distance >= 0))
+    throw argument_error("survey::fly: speed and gimbal rate above 0, a distance from 0 expected");
+  if (!space && (options.min_distance > 0 || options.aim == aim_rule::normal))
+    throw argument_error("survey::fly: a mesh expected to keep away from, or to aim at");
+  flight_plan plan{.camera = path.camera,
+                   .overlap_across = path.overlap_across,
+                   .gsd = ground_sampling(path.camera, path.stand_off)};
+  detail::place_frames(plan, path, options);
+  if (options.min_distance > 0) detail::keep_away(plan, options, *space);
+  if (options.aim == aim_rule::normal) detail::aim(plan, path, *space);
+  detail::set_stamps_and_turns(plan, options);
+  return plan;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/linear.hpp
+
+namespace aib::survey {
+
+struct linear_options {
+  path_options path = {};
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< the axis of a truss, deck, cable or mast
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> views = {};  ///< directions of sight; their part across the axis
+  double width = 0;   ///< of the surface across the axis, as it is seen: flown in lanes
+  double radius = 0;  ///< from the axis to the surface
+};
+
+/// Passes along an axis, for each view in turn, to and fro; between two views an arc about the
+/// axis.
+///
+/// The first image has its up as near to z as may be; the camera turns about the axis from view to
+/// view. Throws argument_error where the axis has no length, there is no view or one lies along the
+/// axis, or an option is out of its range.
+[[nodiscard]] flight_path linear(const linear_options& options);
+
+/// A path through points, straight between them, the direction of sight given at each and turned
+/// evenly between. Throws argument_error unless there are two points or more and a view for each.
+[[nodiscard]] flight_path along(const std::vector<Eigen::Vector3d>& points,
+                                const std::vector<Eigen::Vector3d>& views,
+                                const path_options& options);
+
+namespace detail {
+
+/// The part of a view across an axis, of unit length.
+inline Eigen::Vector3d across(const Eigen::Vector3d& view, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d part = view - axis.dot(view) * axis;
+  if (!(part.norm() > 1e-6 * view.norm()))
+    throw argument_error("survey::linear: views across the axis expected, found one along it");
+  return part.normalized();
+}
+
+/// How far a frame reaches across the direction of flight.
+inline double extent_across(const Eigen::Matrix3d& attitude,
+                            const Eigen::Vector3d& aside,
+                            const wall_frame& frame) {
+  const double right = std::abs(attitude.col(0).dot(aside));
+  const double down = std::abs(attitude.col(1).dot(aside));
+  return 1 / std::max({right / frame.width, down / frame.height, 1e-12});
+}
+
+}  // namespace detail
+
+inline flight_path linear(const linear_options& options) {
+  check(options.path);
+  const Eigen::Vector3d way = options.to - options.from;
+  if (!(way.norm() > 0) || !way.allFinite() || options.views.empty() || !(options.radius >= 0) ||
+      !(options.width >= 0)) {
+    throw argument_error(
+        "survey::linear: an axis of some length, a view or more, radius and width from 0 expected");
+  }
+  const Eigen::Vector3d axis = way.normalized();
+  const double away = options.path.stand_off + options.radius;
+  flight_path path{.camera = options.path.camera, .stand_off = options.path.stand_off, .n_rows = 0};
+  const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
+  Eigen::Vector3d view = detail::across(options.views.front(), axis);
+  Eigen::Matrix3d attitude =
+      looking(view, std::abs(view.z()) < 0.99 ? Eigen::Vector3d::UnitZ() : axis.cross(view));
+  bool is_back = false;     // flown from `to` to `from`
+  bool from_right = false;  // lanes from the positive side
+  for (const Eigen::Vector3d& wanted : options.views) {
+    const Eigen::Vector3d next = detail::across(wanted, axis);
+    const double angle = std::atan2(axis.dot(view.cross(next)), view.dot(next));
+    if (!path.legs.empty() && angle != 0) {
+      const math::rigid3 here = path.legs.back().at(1);
+      const Eigen::Vector3d end = is_back ? options.to : options.from;
+      path.legs.push_back(arc(here, end, axis, angle));
+    }
+    const Eigen::Vector3d swing = angle * axis;
+    attitude = math::rotation_from(swing) * attitude;
+    view = next;
+    const Eigen::Vector3d aside = axis.cross(view);
+    const row_places lanes =
+        place_rows(-options.width / 2, options.width / 2,
+                   detail::extent_across(attitude, aside, frame), options.path.overlap_across);
+    for (std::size_t i = 0; i < lanes.offset.size(); ++i) {
+      const double lane = lanes.offset[from_right ? lanes.offset.size() - 1 - i : i];
+      const Eigen::Vector3d offset = lane * aside - away * view;
+      const math::rigid3 first{attitude, options.from + offset},
+          last{attitude, options.to + offset};
+      go_to(path, is_back ? last : first);
+      path.legs.push_back(is_back ? line(last, first) : line(first, last));
+      is_back = !is_back;
+    }
+    from_right = !from_right;
+    path.n_rows += lanes.offset.size();
+    path.overlap_across = std::min(path.overlap_across, lanes.overlap);
+  }
+  return path;
+}
+
+inline flight_path along(const std::vector<Eigen::Vector3d>& points,
+                         const std::vector<Eigen::Vector3d>& views,
+                         const path_options& options) {
+  check(options);
+  if (points.size() < 2 || points.size() != views.size()) {
+    throw argument_error(
+        message("survey::along: two points or more and a view each expected, found ", points.size(),
+                " points and ", views.size(), " views"));
+  }
+  flight_path path{.camera = options.camera, .stand_off = options.stand_off};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const leg l = line({looking(views[i - 1]), points[i - 1]}, {looking(views[i]), points[i]});
+    if (l.length() > 0) path.legs.push_back(l);
+  }
+  return path;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/measure.hpp
+
+namespace aib::survey {
+
+struct measure_options {
+  std::vector<std::uint32_t> labels = {};  ///< coverage is that of faces with these; none: all
+  std::size_t samples = 20000;             ///< points on the surface
+  std::size_t columns = 32, rows = 18;     ///< rays of a frame
+  double max_incidence = 75 / math::degrees_per_radian;  ///< radians; a flatter view sees nothing
+  double max_distance = std::numeric_limits<double>::infinity();
+  double tolerance = 0.001;  ///< what is nearer by a smaller share of the distance does not hide
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
+};
+
+/// A point on a surface and how it is seen.
+struct seen_sample {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;
+  std::uint32_t n_views = 0;
+  double incidence = HUGE_VAL;  ///< radians, of the steepest view; infinite where there is none
+};
+
+/// What a flight sees, measured by casting rays.
+struct flight_report {
+  std::vector<double> overlap;  ///< of each frame but the last: share of the surface in it that the
+                                ///< next one sees; NaN where it sees none
+  std::vector<float> gsd;       ///< of every ray that hits: depth / focal length
+  std::size_t n_rays = 0;
+  double area = 0;                   ///< of the faces that coverage is about
+  std::vector<seen_sample> samples;  ///< evenly by area
+
+  /// Share of the area that at least `n` views see.
+  [[nodiscard]] double seen_by(std::uint32_t n) const;
+  /// Share of the area that a view sees at no flatter an angle, in radians.
+  [[nodiscard]] double seen_within(double incidence) const;
+};
+
+inline double flight_report::seen_by(std::uint32_t n) const {
+  const auto count = std::count_if(samples.begin(), samples.end(),
+                                   [n](const seen_sample& s) { return s.n_views >= n; });
+  return static_cast<double>(count) / static_cast<double>(samples.size());
+}
+
+inline double flight_report::seen_within(double incidence) const {
+  const auto count = std::count_if(samples.begin(), samples.end(),
+                                   [&](const seen_sample& s) { return s.incidence <= incidence; });
+  return static_cast<double>(count) / static_cast<double>(samples.size());
+}
+
+namespace detail {
+
+/// Points at random, evenly by area, on the faces with some labels.
+inline std::vector<seen_sample> samples_of(const mesh::mesh& m,
+                                           const measure_options& options,
+                                           double& area) {
+  const bool labelled = m.labels.size() == m.triangles.size();
+  std::vector<double> until;  // area up to and with each face
+  area = 0;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+    const std::uint32_t label = labelled ? m.labels[t] : 0;
+    const bool counts = options.labels.empty() || (labelled && is_among(label, options.labels));
+    until.push_back(area += counts ? mesh::area(m, t) : 0);
+  }
+  if (!(area > 0))
+    throw undefined_error("survey::measure: no faces with these labels that have an area");
+  random_engine random(options.seed);
+  std::vector<seen_sample> samples;
+  for (std::size_t i = 0; i < options.samples; ++i) {
+    const auto face = std::upper_bound(until.begin(), until.end(), random.uniform() * area);
+    const auto t = static_cast<std::size_t>(face - until.begin());
+    const auto [a, b, c] = mesh::corners(m, t);
+    const double root = std::sqrt(random.uniform()), along = random.uniform();
+    const Eigen::Vector3d ab = b - a, ac = c - a;
+    samples.push_back(
+        {m.origin + a + root * ((1 - along) * ab + along * ac), ab.cross(ac).normalized()});
+  }
+  return samples;
+}
+
+/// Points in the middle of the cells of a grid over an image, where they lie on the surface.
+inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
+                                              const mesh::ray_surface& surface,
+                                              const measure_options& options,
+                                              std::vector<float>& gsd) {
+  std::vector<Eigen::Vector3d> points;
+  const auto part = [](std::size_t i, std::size_t n, std::uint64_t pixels) {
+    return (static_cast<double>(i) + 0.5) / static_cast<double>(n) * static_cast<double>(pixels);
+  };
+  for (std::size_t y = 0; y < options.rows; ++y) {
+    for (std::size_t x = 0; x < options.columns; ++x) {
+      const auto ray = math::unproject(v.camera, {part(x, options.columns, v.camera.width),
+                                                  part(y, options.rows, v.camera.height)});
+      if (!ray) continue;
+      const Eigen::Vector3d direction = v.world_from_camera.rotation * *ray;
+      const Eigen::Vector3d& from = v.world_from_camera.translation;
+      const auto hit = surface.first_hit(from, direction, options.max_distance);
+      if (!hit) continue;
+      points.push_back(from + hit->distance * direction);
+      if (v.camera.has_focal())
+        gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
+    }
+  }
+  return points;
+}
+
+/// Whether the surface lets a view see a point that lies in its image.
+inline bool sees(const math::view& v,
+                 const Eigen::Vector3d& p,
+                 const mesh::ray_surface& surface,
+                 const measure_options& options) {
+  const Eigen::Vector3d& from = v.world_from_camera.translation;
+  const double distance = (p - from).norm();
+  return distance <= options.max_distance && math::is_in_image(v, p) &&
+         surface.sees(from, p, options.tolerance * distance);
+}
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Casts rays at a mesh to find what a flight sees of it: overlap of consecutive frames, ground
+/// sampling distances, and by how many views and how steeply its surface is seen.
+///
+/// views     in the order of flight; poses that are finite
+/// surface   of the mesh
+///
+/// Both sides of a face count. The same numbers for any number of threads. Throws undefined_error
+/// where there is no view or nothing to cover, argument_error where there is no sample or ray.
+[[nodiscard]] inline flight_report measure(std::span<const math::view> views,
+                                           const mesh::mesh& m,
+                                           const mesh::ray_surface& surface,
+                                           const measure_options& options = {}) {
+  if (views.empty()) throw undefined_error("survey::measure: no view");
+  if (options.samples == 0 || options.columns == 0 || options.rows == 0)
+    throw argument_error("survey::measure: a sample and a ray or more expected");
+  flight_report report;
+  report.n_rays = views.size() * options.columns * options.rows;
+  report.samples = detail::samples_of(m, options, report.area);
+
+  std::vector<std::vector<float>> gsd(views.size());
+  report.overlap.assign(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      const auto points = detail::points_of(views[i], surface, options, gsd[i]);
+      if (i + 1 == views.size() || points.empty()) continue;
+      const auto seen = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {
+        return detail::sees(views[i + 1], p, surface, options);
+      });
+      report.overlap[i] = static_cast<double>(seen) / static_cast<double>(points.size());
+    }
+  });
+  for (const std::vector<float>& of_view : gsd)
+    report.gsd.insert(report.gsd.end(), of_view.begin(), of_view.end());
+
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  for_each_chunk(report.samples.size(), 64, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      seen_sample& s = report.samples[i];
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!cones[k].may_contain(s.position)) continue;
+        const Eigen::Vector3d way = views[k].world_from_camera.translation - s.position;
+        const double incidence =
+            std::atan2(way.cross(s.normal).norm(), std::abs(way.dot(s.normal)));
+        if (incidence > options.max_incidence) continue;
+        if (!detail::sees(views[k], s.position, surface, options)) continue;
+        ++s.n_views;
+        s.incidence = std::min(s.incidence, incidence);
+      }
+    }
+  });
+  return report;
+}
+
+}  // namespace AIB_ISA
+}  // namespace aib::survey
+
+// aib/survey/orbit.hpp
+
+namespace aib::survey {
+
+struct orbit_options {
+  path_options path = {};  ///< stand_off counts for the rows and for frames, not for the circle
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius = 0;
+  double low = 0, high = 0;             ///< heights of the lowest and of the highest circle
+  std::optional<double> look_at = {};   ///< height on the axis; else by the pitch
+  double start = 0;                     ///< radians, azimuth of the first pose, 0 = +x
+  double sweep = 2 * std::numbers::pi;  ///< radians, anticlockwise from above
+};
+
+/// Circles about a vertical axis, flown to and fro, looking at the axis.
+/// Throws argument_error where an option is out of its range.
+[[nodiscard]] inline flight_path orbit(const orbit_options& options) {
+  check(options.path);
+  if (!(options.radius > 0) || !(options.low <= options.high) || !(options.sweep > 0) ||
+      options.sweep > 2 * std::numbers::pi + 1e-9)
+    throw argument_error(
+        "survey::orbit: a radius above 0, low <= high and a sweep of up to 360 degrees expected");
+  const double height = frame_on_wall(options.path.camera, options.path.stand_off).height;
+  const row_places rows = place_rows(options.low - height / 2, options.high + height / 2, height,
+                                     options.path.overlap_across);
+  flight_path path{
+      .camera = options.path.camera,
+      .stand_off = options.path.stand_off,
+      .overlap_across = rows.overlap,
+      .n_rows = rows.offset.size(),
+      .is_closed = rows.offset.size() == 1 && options.sweep > 2 * std::numbers::pi - 1e-9};
+  const Eigen::Vector3d outwards(std::cos(options.start), std::sin(options.start), 0);
+  double from = 0, sweep = options.sweep;
+  for (const double z : rows.offset) {
+    const Eigen::Vector3d axis_point(options.centre.x(), options.centre.y(), z);
+    const double drop =
+        options.look_at ? std::atan2(z - *options.look_at, options.radius) : options.path.pitch;
+    const Eigen::Vector3d view =
+        -std::cos(drop) * outwards - std::sin(drop) * Eigen::Vector3d::UnitZ();
+    const math::rigid3 first{looking(view), axis_point + options.radius * outwards};
+    leg circle = arc(first, axis_point, Eigen::Vector3d::UnitZ(), options.sweep);
+    if (from > 0) circle = circle.reversed();
+    go_to(path, circle.at(0));
+    path.legs.push_back(circle);
+    std::swap(from, sweep);
+  }
+  return path;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/perturb.hpp
+
+namespace aib::survey {
+
+/// What telemetry gets wrong. Lengths in the unit of the poses (metres), angles in radians. Nothing
+/// by default. Vectors are x, y, z.
+struct perturb_options {
+  std::uint64_t seed = 1;
+  Eigen::Vector3d position_noise = Eigen::Vector3d::Zero();  ///< white, standard deviations
+  double position_walk = 0;  ///< a coordinate's standard deviation after a second (or a frame)
+  Eigen::Vector3d position_bias = Eigen::Vector3d::Zero();
+  double yaw_bias = 0;   ///< about z of the world, of the attitude
+  double yaw_noise = 0;  ///< white, standard deviation
+  /// About the camera's own axes: pitch (x, right), yaw (y, down), roll (z, forward).
+  Eigen::Vector3d gimbal_bias = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gimbal_noise = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();  ///< of the antenna, in the camera
+  double time_offset = 0;     ///< s (frames without stamps): the pose of that much later is told
+  double dropout = 0;         ///< share of the poses that are missing: not registered
+  double dropout_length = 1;  ///< mean number of frames of a gap
+};
+
+/// Intrinsics that drift. Shares of the focal length, pixels of the principal point.
+struct intrinsics_drift {
+  std::uint64_t seed = 1;
+  double focal_bias = 0;   ///< of all frames
+  double focal_noise = 0;  ///< white, standard deviation
+  double focal_walk = 0;   ///< standard deviation after a frame
+  double centre_noise = 0;
+  double centre_walk = 0;
+};
+
+namespace detail {
+
+/// Random numbers of one kind of error, by frame: they are the same whatever other errors there
+/// are.
+class error_source {
+ public:
+  error_source(std::uint64_t seed, std::uint64_t kind) : seed_(random_bits(seed, kind)) {}
+
+  [[nodiscard]] random_engine at(std::size_t frame) const {
+    return random_engine(random_bits(seed_, frame));
+  }
+  [[nodiscard]] double normal(std::size_t frame) const { return at(frame).normal(); }
+  [[nodiscard]] Eigen::Vector3d normals(std::size_t frame) const {
+    random_engine random = at(frame);
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    return {x, y, z};
+  }
+
+ private:
+  std::uint64_t seed_;
+};
+
+/// The pose at a time between those of a trajectory; that of the nearest end outside.
+inline math::rigid3 pose_at(const pose::trajectory& t,
+                            const std::vector<double>& times,
+                            double time) {
+  const auto behind = std::upper_bound(times.begin(), times.end(), time);
+  if (behind == times.begin()) return t.world_from_camera.front();
+  if (behind == times.end()) return t.world_from_camera.back();
+  const auto i = static_cast<std::size_t>(behind - times.begin());
+  const math::rigid3 &a = t.world_from_camera[i - 1], &b = t.world_from_camera[i];
+  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  const Eigen::Vector3d turn = math::axis_angle_from(b.rotation * a.rotation.transpose());
+  const Eigen::Vector3d part = share * turn;
+  return {math::rotation_from(part) * a.rotation,
+          a.translation + share * (b.translation - a.translation)};
+}
+
+/// Which frames a two-state chain drops: gaps of a mean length, a share in all.
+inline std::vector<bool> dropped(std::size_t n, const perturb_options& o) {
+  const error_source source(o.seed, 5);
+  const double end = 1 / std::max(1.0, o.dropout_length);
+  const double begin = o.dropout < 1 ? end * o.dropout / (1 - o.dropout) : 1;
+  std::vector<bool> is_dropped(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double chance = i == 0 ? o.dropout : is_dropped[i - 1] ? 1 - end : std::min(begin, 1.0);
+    is_dropped[i] = o.dropout > 0 && source.at(i).uniform() < chance;
+  }
+  return is_dropped;
+}
+
+}  // namespace detail
+
+/// A trajectory as telemetry would tell it. Names and stamps stay; a pose that drops out is not
+/// registered. The same seed gives the same errors of a kind, whatever the others are.
+///
+/// Throws argument_error where a deviation is negative, the dropout no share, or stamps do not
+/// grow.
+[[nodiscard]] inline pose::trajectory perturb(const pose::trajectory& truth,
+                                              const perturb_options& o) {
+  pose::check(truth);
+  const bool sane = (o.position_noise.array() >= 0).all() && (o.gimbal_noise.array() >= 0).all() &&
+                    o.position_walk >= 0 && o.yaw_noise >= 0 && o.dropout >= 0 && o.dropout <= 1 &&
+                    std::isfinite(o.time_offset);
+  if (!sane) {
+    throw argument_error(
+        "survey::perturb: standard deviations from 0, a dropout of 0..1 and a "
+        "finite time offset expected");
+  }
+  const std::size_t n = truth.size();
+  std::vector<double> times = truth.stamps_s;
+  for (std::size_t i = times.size(); i < n; ++i) times.push_back(static_cast<double>(i));
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end() &&
+      o.time_offset != 0)
+    throw argument_error("survey::perturb: stamps that grow expected, for a time offset");
+  const detail::error_source white(o.seed, 0), walk(o.seed, 1), yaw(o.seed, 2), gimbal(o.seed, 3);
+  const std::vector<bool> missing = detail::dropped(n, o);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  pose::trajectory told = truth;
+  Eigen::Vector3d walked = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    math::rigid3 p = o.time_offset == 0 ? truth.world_from_camera[i]
+                                        : detail::pose_at(truth, times, times[i] + o.time_offset);
+    const double since = i == 0 ? 0 : std::abs(times[i] - times[i - 1]);
+    walked += o.position_walk * std::sqrt(since) * walk.normals(i);
+    const Eigen::Vector3d noise = o.position_noise.cwiseProduct(white.normals(i));
+    p.translation += p.rotation * o.lever_arm + o.position_bias + walked + noise;
+    const Eigen::Vector3d about_z(0, 0, o.yaw_bias + o.yaw_noise * yaw.normal(i));
+    const Eigen::Vector3d own = o.gimbal_bias + o.gimbal_noise.cwiseProduct(gimbal.normals(i));
+    p.rotation = math::rotation_from(about_z) * p.rotation * math::rotation_from(own);
+    if (missing[i]) p.translation.setConstant(nan);
+    told.world_from_camera[i] = p;
+  }
+  return told;
+}
+
+/// Cameras of n frames whose intrinsics drift away from one. Throws argument_error for a camera
+/// without focal length, or where a deviation is negative.
+[[nodiscard]] inline std::vector<math::camera> perturb_camera(const math::camera& truth,
+                                                              std::size_t n,
+                                                              const intrinsics_drift& o) {
+  if (!(o.focal_noise >= 0 && o.focal_walk >= 0 && o.centre_noise >= 0 && o.centre_walk >= 0))
+    throw argument_error("survey::perturb_camera: standard deviations from 0 expected");
+  static_cast<void>(truth.cy());  // throws where there is no focal length
+  const detail::error_source white(o.seed, 6), walk(o.seed, 7);
+  const std::size_t n_focal = math::info(truth.model).n_focal;
+  std::vector<math::camera> cameras;
+  Eigen::Vector3d walked = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d step(o.focal_walk, o.centre_walk, o.centre_walk);
+  const Eigen::Vector3d spread(o.focal_noise, o.centre_noise, o.centre_noise);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i > 0) walked += step.cwiseProduct(walk.normals(i));
+    const Eigen::Vector3d error = walked + spread.cwiseProduct(white.normals(i));
+    math::camera c = truth;
+    for (std::size_t k = 0; k < n_focal; ++k) c.parameters[k] *= 1 + o.focal_bias + error.x();
+    c.parameters[n_focal] += error.y();
+    c.parameters[n_focal + 1] += error.z();
+    cameras.push_back(c);
+  }
+  return cameras;
+}
+
+}  // namespace aib::survey

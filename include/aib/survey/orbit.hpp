@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace aib::survey {
 

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Flights: planned, measured, and what goes wrong with them.
+
+#include <aib/survey/facade.hpp>
+#include <aib/survey/flight_path.hpp>
+#include <aib/survey/fly.hpp>
+#include <aib/survey/footprint.hpp>
+#include <aib/survey/lens.hpp>
+#include <aib/survey/linear.hpp>
+#include <aib/survey/measure.hpp>
+#include <aib/survey/orbit.hpp>
+#include <aib/survey/perturb.hpp>
+#include <aib/survey/sensor_noise.hpp>
