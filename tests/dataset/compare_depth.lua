@@ -26,9 +26,14 @@ end
 
 local function differs(found, expected) return math.abs(found - expected) > tolerance * expected end
 
-local function is_between(found, maps, i)
-  local low, high = math.huge, 0
-  for _, map in ipairs(maps) do low, high = math.min(low, map[i]), math.max(high, map[i]) end
+--- Whether a depth is one of those near the pixel's centre or between them; sky only where one of them is sky.
+local function is_near(found, maps, i)
+  local low, high, has_sky = math.huge, 0, false
+  for _, map in ipairs(maps) do
+    has_sky = has_sky or map[i] == 0
+    if map[i] > 0 then low, high = math.min(low, map[i]), math.max(high, map[i]) end
+  end
+  if found == 0 then return has_sky end
   return found >= low * (1 - 10 * tolerance) and found <= high * (1 + 10 * tolerance)
 end
 
@@ -45,7 +50,7 @@ for k, name in ipairs(trajectory.names) do
   local found, n_edge, n_wrong = aib.io.array(theirs), 0, 0
   for i = 1, #found do
     if differs(found[i], maps[1][i]) then
-      local at_edge = is_between(found[i], maps, i)
+      local at_edge = is_near(found[i], maps, i)
       n_edge, n_wrong = n_edge + (at_edge and 1 or 0), n_wrong + (at_edge and 0 or 1)
     end
   end
