@@ -167,7 +167,7 @@ local function histogram(cell, title, distances, high)
 end
 
 --- Enough to colour faces by; the numbers of the tables are of all samples.
-local n_face_samples <const> = 20000
+local n_face_samples <const> = 10000
 
 --- Precision, recall and F-score against the threshold, histograms, and the geometry in the colours of its errors.
 --- `taus` are the protocol's thresholds.
@@ -185,7 +185,7 @@ function M.points(cell, cloud, truth, to_reference, to_estimate, taus)
   histogram(cell, "Completeness, histogram", to_estimate, 10 * middle)
   cell:cloud { role = "estimate", cloud = cloud, values = to_reference, label = "distance to the truth", unit = "m" }
   cell:cloud { role = "reference", cloud = truth.reference, values = to_estimate, label = "distance to the estimate",
-    unit = "m", limit = 50000 }
+    unit = "m", limit = 30000 }
   if not truth.mesh then return end
   local faces = {}
   if not truth.points then
