@@ -84,12 +84,11 @@ function parser:common_option(key, value)
     self.call.threads = inputs.value(threads, value or self:next_value(key), wrong)
     return
   end
-  local path = value or self:next_value(key)
+  local path = inputs.value({ key = key, kind = "path" }, value or self:next_value(key), wrong)
   local folder = path:match("^(.*)/[^/]*$")
   if folder == "" then folder = "/" end
-  if path == "" or folder and not aib.system.is_folder(folder) then
-    wrong(("--%s: %s: no such folder"):format(key, folder or "''"))
-  end
+  if folder and not aib.system.is_folder(folder) then wrong(("--%s: %s: no such folder"):format(key, folder)) end
+  if aib.system.is_folder(path) then wrong(("--%s: %s: a file expected, found a folder"):format(key, path)) end
   self.call.outputs[key] = path
 end
 

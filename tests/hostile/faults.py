@@ -138,7 +138,7 @@ class Faults(unittest.TestCase):
         protocol.write_text("return require('aib').protocol { name = 'p', inputs = {}, "
                             "run = function(_, report) report:add('x', 1) end }")
         self.refused(run(protocol, "--quiet", "--json", "/dev/full"), 1, "p: /dev/full: cannot write: No space left")
-        self.refused(run(protocol, "--quiet", "--json", self.folder), 1, "a file expected, found a folder")
+        self.refused(run(protocol, "--quiet", "--json", self.folder), 2, "a file expected, found a folder")
         self.refused(run(protocol, "--quiet", "--json", self.folder / "no/x.json"), 2, "no such folder")
         done = run(protocol, "--quiet", "--json", "/dev/stdout")
         self.assertIn('"value": 1', done.stdout)
@@ -275,7 +275,7 @@ class Faults(unittest.TestCase):
     # Interrupts ------------------------------------------------------------------------------------
 
     LONG = {
-        "auc": "aib.pose.auc(poses(12000), poses(12000))",
+        "auc": "aib.pose.auc(poses(30000), poses(30000))",
         "compare": "aib.cloud.compare(cloud(300000, 1), cloud(300000, 1e-3))",
         "icp": "aib.align.icp(cloud(100000, 1), cloud(100000, 1), { max_distance = 1, relative_change = 0 })",
         "bootstrap": "aib.stats.bootstrap(numbers(20000), { resamples = 100000 })",
