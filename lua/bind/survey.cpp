@@ -37,7 +37,8 @@ namespace fs = std::filesystem;
 using survey::flight_path;
 
 std::string print_path(const flight_path& p) {
-  return message("flight_path(", p.length(), " m, ", p.legs.size(), " legs, ", p.n_rows, " rows)");
+  return message("flight_path(", std::round(1000 * p.length()) / 1000, " m, ", p.legs.size(),
+                 " legs, ", p.n_rows, " rows)");
 }
 
 double angle_option(options& o, const char* name, double fallback_deg) {
@@ -60,7 +61,6 @@ survey::path_options path_options(options& o, double stand_off = 0) {
   survey::path_options p;
   if (const auto* camera = o.object<math::camera>("camera")) p.camera = *camera;
   p.overlap_across = o.number("overlap_across", p.overlap_across);
-  p.pitch = angle_option(o, "pitch", 0);
   const auto gsd_mm = o.get<double>("gsd_mm");
   const auto given = o.get<double>("stand_off");
   if (gsd_mm && given) o.reject("gsd_mm", "stand_off is given: one of the two expected");
@@ -89,6 +89,7 @@ survey::footprint footprint_option(options& o) {
 flight_path facade(options& o) {
   const survey::footprint plan = footprint_option(o);
   survey::facade_options how{.path = path_options(o)};
+  how.path.pitch = angle_option(o, "pitch", 0);
   if (const auto sides = o.get<std::vector<std::size_t>>("sides")) {
     if (sides->size() != 2 || sides->front() < 1 || sides->back() < 1)
       o.reject("sides", "{ first, last } expected, counted from 1");
@@ -102,10 +103,12 @@ flight_path orbit(options& o) {
   survey::orbit_options how;
   how.radius = o.number("radius", 0);
   how.path = path_options(o, how.radius);
+  how.path.pitch = angle_option(o, "pitch", 0);
   how.centre = o.get<Eigen::Vector2d>("centre").value_or(Eigen::Vector2d::Zero());
   how.low = o.number("low", 0);
   how.high = o.number("high", how.low);
   how.look_at = o.get<double>("look_at");
+  if (how.look_at && o.has("pitch")) o.reject("pitch", "look_at is given: one of the two expected");
   how.start = angle_option(o, "start", 0);
   how.sweep = angle_option(o, "sweep", 360);
   o.done();
@@ -115,6 +118,7 @@ flight_path orbit(options& o) {
 flight_path linear(options& o) {
   survey::linear_options how;
   how.path = path_options(o);
+  how.path.pitch = angle_option(o, "pitch", 0);
   how.from = vector_option(o, "from");
   how.to = vector_option(o, "to");
   how.views = o.get<std::vector<Eigen::Vector3d>>("views").value_or(how.views);

@@ -125,6 +125,24 @@ TEST_CASE("rows lie on the offset of the footprint and look at it at right angle
   }
 }
 
+TEST_CASE("a pitch looks down at the same rows from higher up") {
+  const double pitch = 0.3;
+  const auto rows =
+      survey::facade(survey::footprint_of(office), {.path = {.stand_off = 6, .pitch = pitch}});
+  const auto pass =
+      survey::linear({.path = {.stand_off = 6, .pitch = pitch},
+                      .from = {-9, -10, rows.at(0).translation.z() - 6 * std::tan(pitch)},
+                      .to = {9, -10, rows.at(0).translation.z() - 6 * std::tan(pitch)},
+                      .views = {{0, 1, 0}}});
+  for (const auto& path : {rows, pass}) {
+    const auto pose = path.at(0.001);
+    CHECK(pose.rotation(2, 2) == doctest::Approx(-std::sin(pitch)));
+    CHECK(pose.translation.z() ==
+          doctest::Approx(survey::frame_on_wall(path.camera, 6).height / 2 + 6 * std::tan(pitch)));
+    CHECK(pose.translation.y() == doctest::Approx(-16));
+  }
+}
+
 TEST_CASE("as many frames as are asked for, evenly") {
   for (const std::size_t n : {4763u, 642u, 1074u, 2u}) {
     const auto plan = survey::fly(office_path(5.6), {.frames = n});

@@ -30,8 +30,9 @@ struct linear_options {
 /// axis.
 ///
 /// The first image has its up as near to z as may be; the camera turns about the axis from view to
-/// view. Throws argument_error where the axis has no length, there is no view or one lies along the
-/// axis, or an option is out of its range.
+/// view. A pitch looks down in the image and flies as much higher. Throws argument_error where the
+/// axis has no length, there is no view or one lies along the axis, or an option is out of its
+/// range.
 [[nodiscard]] flight_path linear(const linear_options& options);
 
 /// A path through points, straight between them, the direction of sight given at each and turned
@@ -76,6 +77,10 @@ inline flight_path linear(const linear_options& options) {
   Eigen::Vector3d view = detail::across(options.views.front(), axis);
   Eigen::Matrix3d attitude =
       looking(view, std::abs(view.z()) < 0.99 ? Eigen::Vector3d::UnitZ() : axis.cross(view));
+  Eigen::Vector3d up = -attitude.col(1);
+  const double rise = options.path.stand_off * std::tan(options.path.pitch);
+  const Eigen::Vector3d down(-options.path.pitch, 0, 0);
+  attitude = attitude * math::rotation_from(down);
   bool is_back = false;     // flown from `to` to `from`
   bool from_right = false;  // lanes from the positive side
   for (const Eigen::Vector3d& wanted : options.views) {
@@ -88,6 +93,7 @@ inline flight_path linear(const linear_options& options) {
     }
     const Eigen::Vector3d swing = angle * axis;
     attitude = math::rotation_from(swing) * attitude;
+    up = math::rotation_from(swing) * up;
     view = next;
     const Eigen::Vector3d aside = axis.cross(view);
     const row_places lanes =
@@ -95,7 +101,7 @@ inline flight_path linear(const linear_options& options) {
                    detail::extent_across(attitude, aside, frame), options.path.overlap_across);
     for (std::size_t i = 0; i < lanes.offset.size(); ++i) {
       const double lane = lanes.offset[from_right ? lanes.offset.size() - 1 - i : i];
-      const Eigen::Vector3d offset = lane * aside - away * view;
+      const Eigen::Vector3d offset = lane * aside - away * view + rise * up;
       const math::rigid3 first{attitude, options.from + offset},
           last{attitude, options.to + offset};
       go_to(path, is_back ? last : first);

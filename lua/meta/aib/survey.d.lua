@@ -34,9 +34,9 @@ function flight_path:reversed() end
 ---@field stand_off? number  # distance to the surface
 ---@field gsd_mm? number  # millimetres a pixel at the surface: stand_off = gsd_mm / 1000 * fx
 ---@field overlap_across? number  # of neighbouring rows, at least; 0.8
----@field pitch? number  # positive looks down; 0
 
 ---@class aib.FacadeOptions : aib.FlightPathOptions
+---@field pitch? number  # positive looks down, and flies as much higher; 0
 ---@field mesh? aib.Mesh  # the convex hull of its ground plan is flown round, over its heights
 ---@field labels? string[]  # of the faces with these labels alone
 ---@field footprint? number[][]  # or corners {x, y} of a convex polygon; then low and high are needed
@@ -54,7 +54,8 @@ function survey.facade(options) end
 ---@field radius number  # of the circle; also the stand_off that counts for rows and frames, where none is given
 ---@field low? number  # height of the lowest circle, 0
 ---@field high? number  # of the highest; one circle by default
----@field look_at? number  # height on the axis; else by the pitch
+---@field look_at? number  # height on the axis that is looked at
+---@field pitch? number  # or an angle, positive looks down; 0
 ---@field start? number  # azimuth of the first frame, 0 = +x, anticlockwise
 ---@field sweep? number  # 360
 
@@ -67,6 +68,7 @@ function survey.orbit(options) end
 ---@field from number[]  # {x, y, z}: the axis of a truss, deck, cable or mast
 ---@field to number[]
 ---@field views number[][]  # directions of sight {x, y, z}, in turn; their part across the axis counts
+---@field pitch? number  # positive looks down in the image, and flies as much higher; 0
 ---@field width? number  # of the surface across the axis, as it is seen: flown in lanes; 0
 ---@field radius? number  # from the axis to the surface; 0
 
@@ -106,7 +108,7 @@ function survey.join(paths) end
 ---@field cameras table<string, aib.Camera>  # by image name, as aib.io.write_trajectory takes them
 ---@field n_frames integer
 ---@field step number  # mean distance between frames along the path
----@field overlap number  # of neighbouring frames, on a wall at the stand-off
+---@field overlap number  # of neighbouring frames, on a wall at the stand-off; below 0 there are gaps
 ---@field overlap_across number  # of neighbouring rows, likewise
 ---@field length number
 ---@field duration number  # seconds
