@@ -8,13 +8,14 @@ import { el, short, themed } from "./dom.js";
 import { isShown, onFilter } from "./filter.js";
 import { hasFrame, openFrame } from "./frames.js";
 
-const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+/// As many colours as the style sheet has lines of.
+const nColors = 6;
 const dashes = [undefined, [7, 3], [2, 3], [9, 3, 2, 3]];
 const charts = [];
 
 const axisLabel = ({ label, unit }) => (label ?? "") + (unit ? ` (${unit})` : "");
-const colorOf = (place) => palette[place % palette.length];
-const dashOf = (place) => dashes[Math.floor(place / palette.length) % dashes.length];
+const colorOf = (place) => themed(`--line-${(place % nColors) + 1}`);
+const dashOf = (place) => dashes[Math.floor(place / nColors) % dashes.length];
 
 function axis(scale, spec, extra = {}) {
   const ink = themed("--ink-soft");
