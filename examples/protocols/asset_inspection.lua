@@ -123,11 +123,23 @@ local function frame_lists(parts)
   return lists
 end
 
+--- Shards bring numbers of frames and no pictures: those are drawn then.
+local function draw_merged(report, parts)
+  if not report:draws() or #report.store.views > 0 then return end
+  for _, part in ipairs(parts) do
+    for metric, frames in pairs(part.frames) do
+      report:within(part.group):timeline { title = metric .. " along the flight", y = { label = metric },
+        frames = frames.names, values = frames.values }
+    end
+  end
+end
+
 --- What follows from all units together, in this run or in merged shards.
 local function finish(input, report, parts, files)
   add_tables(report, input)
   state_conventions(report, input)
   add_sensitivity(report, parts, input.rule)
+  draw_merged(report, parts)
   if input.per_frame then report.store.frames = frame_lists(parts) end
   for label, print in pairs(files:sources()) do report:source(label, print) end
   aib.consistency.check_report(report)
