@@ -209,6 +209,8 @@ TEST_CASE("a flight round the walls sees them from everywhere, and nothing of ro
   const auto flat = survey::measure(views_of(plan), office, surface,
                                     {.labels = {1}, .samples = 500, .columns = 4, .rows = 2});
   CHECK(flat.seen_by(1) < 0.01);
+  CHECK(flat.gsd.empty());
+  CHECK(std::isnan(flat.overlap.front()));
   const auto alone = survey::measure(views_of(plan), office, surface,
                                      {.samples = 500, .columns = 4, .rows = 2, .threads = 1});
   const auto many = survey::measure(views_of(plan), office, surface,

@@ -30,9 +30,9 @@
 namespace aib::survey {
 
 struct measure_options {
-  std::vector<std::uint32_t> labels = {};  ///< coverage is that of faces with these; none: all
-  std::size_t samples = 20000;             ///< points on the surface
-  std::size_t columns = 32, rows = 18;     ///< rays of a frame
+  std::vector<std::uint32_t> labels = {};                ///< of the faces that count; none: all
+  std::size_t samples = 20000;                           ///< points on the surface
+  std::size_t columns = 32, rows = 18;                   ///< rays of a frame
   double max_incidence = 75 / math::degrees_per_radian;  ///< radians; a flatter view sees nothing
   double max_distance = std::numeric_limits<double>::infinity();
   double tolerance = 0.001;  ///< what is nearer by a smaller share of the distance does not hide
@@ -53,7 +53,7 @@ struct seen_sample {
 struct flight_report {
   std::vector<double> overlap;  ///< of each frame but the last: share of the surface in it that the
                                 ///< next one sees; NaN where it sees none
-  std::vector<float> gsd;       ///< of every ray that hits: depth / focal length
+  std::vector<float> gsd;       ///< of every ray that counts: depth / focal length
   std::size_t n_rays = 0;
   double area = 0;                   ///< of the faces that coverage is about
   std::vector<seen_sample> samples;  ///< evenly by area
@@ -123,7 +123,7 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
       const Eigen::Vector3d direction = v.world_from_camera.rotation * *ray;
       const Eigen::Vector3d& from = v.world_from_camera.translation;
       const auto hit = surface.first_hit(from, direction, options.max_distance);
-      if (!hit) continue;
+      if (!hit || !is_among(surface.label_at(hit->place), options.labels)) continue;
       points.push_back(from + hit->distance * direction);
       if (v.camera.has_focal())
         gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
@@ -153,6 +153,7 @@ inline namespace AIB_ISA {
 /// views     in the order of flight; poses that are finite
 /// surface   of the mesh
 ///
+/// Where labels are given, faces with others hide what is behind them and do not count.
 /// Both sides of a face count. The same numbers for any number of threads. Throws undefined_error
 /// where there is no view or nothing to cover, argument_error where there is no sample or ray.
 [[nodiscard]] inline flight_report measure(std::span<const math::view> views,

@@ -126,7 +126,7 @@ function survey.join(paths) end
 function survey.fly(path, options) end
 
 ---@class aib.MeasureOptions
----@field labels? string[]  # coverage is that of faces with these alone
+---@field labels? string[]  # faces with these alone count; others hide what is behind them
 ---@field samples? integer  # points on the surface, 20000
 ---@field columns? integer  # rays of a frame, 32 x 18
 ---@field rows? integer
@@ -140,7 +140,7 @@ function survey.fly(path, options) end
 ---@field overlap { mean: number, median: number, min: number, p10: number, n_pairs: integer, n_blind: integer }  # share of the surface in a frame that the next one sees; blind frames see none
 ---@field overlaps number[]  # of each frame but the last; NaN where it is blind
 ---@field gsd_mm { mean: number, median: number, p05: number, p95: number, max: number }  # depth / focal length of the rays
----@field hit_share number  # of the rays
+---@field hit_share number  # of the rays that hit faces that count
 ---@field coverage table<integer, number>  # share of the area that at least 1, 2, 3, 5, 10 views see
 ---@field incidence table<integer, number>  # share of the area that a view sees within 15, 30, 45, 60, 75 degrees of the normal
 ---@field n_views_mean number  # views that see a point
