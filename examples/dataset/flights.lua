@@ -27,7 +27,7 @@ local office = { name = "office" }
 --- Rows round all facades, then lanes over the roof, above the antenna.
 function office.paper(asset, camera)
   local facade = aib.survey.facade { camera = camera, footprint = corners(asset), low = 0.3, high = asset.high[3],
-    stand_off = 6.2 }
+    stand_off = 6.5 }
   local roof = aib.survey.linear { camera = camera, from = { -13, 0, 14 }, to = { 13, 0, 14 },
     views = { { 0, 0, -1 } }, width = 19, stand_off = 8.5 }
   return aib.survey.join { facade, roof }, { frames = 4763, min_distance = 2 }
@@ -36,12 +36,12 @@ end
 function office.small(asset, camera)
   local facade = aib.survey.facade { camera = camera, footprint = corners(asset), low = 0, high = asset.high[3],
     stand_off = 13, overlap_across = 0.6, sides = { 1, 2 }, pitch = 5 }
-  return facade, { frames = 180, min_distance = 2 }
+  return facade, { frames = 250, min_distance = 2 }
 end
 
 function office.tiny(_, camera)
   return aib.survey.orbit { camera = camera, centre = { 0, 0 }, radius = 31, low = 19, look_at = 7.5,
-    start = -125, sweep = 100 }, { frames = 24 }
+    start = -125, sweep = 100 }, { frames = 24, min_distance = 2 }
 end
 
 local crane = { name = "crane" }
@@ -62,13 +62,13 @@ function crane.small(asset, camera)
   local views = {}
   for k = 0, 3 do views[k + 1] = towards(22.5 + 45 * k) end
   local mast = aib.survey.linear { camera = camera, from = { 0, 0, 3 }, to = { 0, 0, asset.high[3] }, views = views,
-    radius = asset.high[1], stand_off = 13, pitch = 10 }
-  return mast, { frames = 120, min_distance = 1.5 }
+    radius = asset.high[1], stand_off = 9, pitch = 10 }
+  return mast, { frames = 200, min_distance = 1.5 }
 end
 
 function crane.tiny(_, camera)
   return aib.survey.orbit { camera = camera, centre = { 4, 0 }, radius = 34, low = 39, look_at = 15,
-    start = -130, sweep = 100 }, { frames = 24 }
+    start = -130, sweep = 100 }, { frames = 24, min_distance = 2 }
 end
 
 local bridge = { name = "bridge" }
@@ -99,7 +99,7 @@ end
 
 function bridge.tiny(_, camera, scene)
   return aib.survey.orbit { camera = camera, centre = { 0, 0 }, radius = 44, low = scene.deck + 17,
-    look_at = scene.deck + 1, start = -135, sweep = 80 }, { frames = 24 }
+    look_at = scene.deck + 1, start = -135, sweep = 80 }, { frames = 24, min_distance = 2 }
 end
 
 local flights <const> = { office = office, crane = crane, bridge = bridge }

@@ -7,7 +7,7 @@
 #   examples/dataset/make.sh SCENE --scale tiny|small|paper [--out FOLDER] [--soiling LEVELS] [--samples N]
 #
 #   SCENE       office, crane, bridge or all; several makes share a folder
-#   --scale     tiny: 24 frames of 320 x 180; small: 120 to 180 of 960 x 540; paper: 4763, 642, 1074 of 1920 x 1080
+#   --scale     tiny: 24 frames of 320 x 180; small: 140 to 250 of 960 x 540; paper: 4763, 642, 1074 of 1920 x 1080
 #   --out       default build/dataset
 #   --soiling   of the office's glass, with commas: very_low,low,medium,high; default: first and last, all at paper
 #   --samples   rays a pixel at most; default 16, 64, 128 by scale (a denoiser is used where Blender has one)

@@ -17,9 +17,14 @@ for name, n in pairs(paper_frames) do
     t:equal({ paper.n_frames, #paper.trajectory, paper.camera.width, paper.camera.height }, { n, n, 1920, 1080 })
     t:near(paper.camera.fx, 50 / 36 * 1920, 1e-9)
     t:check(paper.overlap > 0.6 and paper.overlap < 0.95, "overlap " .. paper.overlap)
-    local tiny, small = flights.plan(scene, "tiny"), flights.plan(scene, "small")
+    local path = os.tmpname()
+    scene.build():save(path)
+    local mesh = aib.render.scene(aib.io.read_mesh(path))
+    os.remove(path)
+    local tiny, small = flights.plan(scene, "tiny", mesh), flights.plan(scene, "small", mesh)
     t:equal({ tiny.n_frames, tiny.camera.width }, { 24, 320 })
-    t:check(small.n_frames >= 120 and small.camera.width == 960)
+    t:check(small.n_frames >= 140 and small.camera.width == 960)
+    for _, plan in ipairs { tiny, small } do t:check(plan.min_distance > 1, plan.min_distance) end
     t:equal({ tiny.trajectory.names[1], tiny.trajectory.names[24] }, { "000000.png", "000023.png" })
   end
 end
