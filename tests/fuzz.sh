@@ -70,7 +70,7 @@ reader_run() {
   AIB_READER=$1 AIB_MODEL=examples/data/methods/glomap/crane/sparse/3 \
     UBSAN_OPTIONS=print_stacktrace=1 \
     ASAN_OPTIONS=detect_leaks=0:hard_rss_limit_mb=2048:max_allocation_size_mb=1100:allocator_may_return_null=0 \
-    $program "${@:2}" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1100 \
+    $program "${@:2}" -timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=1100 \
     -artifact_prefix="build-fuzz/findings/$1-"
 }
 
