@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Makes one cloud of a folder of depth maps and their poses, frame by frame: a point for each voxel. Memory grows with
---- the voxels, not with the frames.
+--- Makes one cloud of a folder of depth maps and their poses, frame by frame: a point for each voxel, or all of them.
+--- Memory grows with the voxels, not with the frames.
 ---
 ---   aib-lua fuse_depth method/depth method/sparse --out cloud.ply --voxel 0.02 --confidence method/conf --min 0.75
 local aib = require "aib"
@@ -31,16 +31,29 @@ local function unproject_options(input, confidences, name)
   return options
 end
 
+--- Where the points of the frames go: voxels of this size, or at 0 all to the file.
+local function sink(path, voxel)
+  if voxel == 0 then
+    local writer = aib.io.cloud_writer(path)
+    local finish = function() writer:commit() end
+    return { add = function(points) writer:add(points) end, size = function() return #writer end, finish = finish }
+  end
+  local grid = aib.sample.voxel_grid { size = voxel }
+  local finish = function() aib.io.write_cloud(path, grid:cloud()) end
+  return { add = function(points) grid:add(points) end, size = function() return #grid end, finish = finish }
+end
+
 return aib.protocol {
   name = "fuse_depth",
   title = "One cloud of many depth maps",
   help = "Unprojects every depth map that has a registered pose and thins the points to one a voxel, the mean of those "
-    .. "in it. With --confidence the points at most --min sure are left out; the kept share is told.",
+    .. "in it; without --voxel all points are written as they come. With --confidence points at most --min sure are "
+    .. "left out; the kept share is told.",
   inputs = {
     depth = { kind = "folder", position = 1, help = "folder of depth maps" },
     poses = { kind = "path", position = 2, help = "poses and cameras with image names, any format" },
     out = { kind = "path", help = "PLY file to write" },
-    voxel = { kind = "number", unit = "m", min = 0, help = "edge of a voxel" },
+    voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "edge of a voxel; 0: every point" },
     pattern = { kind = "path", default = "*", help = 'names of the depth maps, * is the image\'s stem; "*" is any' },
     scale = { kind = "number", default = 0, min = 0, help = "stored value of a metre; 0: the format's own" },
     max_depth = { kind = "number", unit = "m", default = 0, min = 0, help = "it and farther is left out; 0: nothing" },
@@ -57,8 +70,8 @@ return aib.protocol {
     if #names == 0 then failure.raise("io", input.depth .. ": no depth maps") end
     local confidences = input.confidence ~= "" and depth_frames.files_in(input.confidence, input.pattern)
     local frames = by_stem(aib.io.read_trajectory(input.poses), aib.io.read_cameras(input.poses))
-    local grid = aib.sample.voxel_grid { size = input.voxel }
-    local n_frames, n_valid, n_unsure = 0, 0, 0
+    local out = sink(input.out, input.voxel)
+    local n_frames, n_points, n_valid, n_unsure = 0, 0, 0, 0
     local progress <close> = aib.progress(#names, "frames")
     for _, name in ipairs(names) do
       progress:step(name)
@@ -68,7 +81,8 @@ return aib.protocol {
           max_depth = input.max_depth > 0 and input.max_depth or nil })
         local options = unproject_options(input, confidences, name)
         local points, info = aib.sample.unproject(map, frame.camera, frame.pose, options)
-        grid:add(points)
+        out.add(points)
+        n_points = n_points + #points
         n_frames, n_valid, n_unsure = n_frames + 1, n_valid + info.n_valid, n_unsure + info.n_unsure
       end
     end
@@ -76,7 +90,7 @@ return aib.protocol {
     report:add("fuse.frames", n_frames, { n = #names })
     report:add("fuse.kept_share", n_valid > 0 and 1 - n_unsure / n_valid or nil, { n = n_valid,
       options = { min = input.min, rule = input.rule } })
-    report:add("fuse.points", #grid, { n = grid.n_points, options = { voxel = input.voxel } })
-    aib.io.write_cloud(input.out, grid:cloud())
+    report:add("fuse.points", out.size(), { n = n_points, options = { voxel = input.voxel } })
+    out.finish()
   end,
 }

@@ -11,6 +11,7 @@
 #include <aib/io/byte_stream.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/cloud.hpp>
+#include <aib/io/cloud_stream.hpp>
 #include <aib/io/colmap.hpp>
 #include <aib/io/colmap_binary.hpp>
 #include <aib/io/colmap_depth.hpp>

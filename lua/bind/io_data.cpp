@@ -3,6 +3,7 @@
 #include <aib/cloud/distances.hpp>
 #include <aib/cloud/offsets.hpp>
 #include <aib/io/cloud.hpp>
+#include <aib/io/cloud_stream.hpp>
 #include <aib/io/depth.hpp>
 #include <aib/io/frame_stack.hpp>
 #include <aib/io/image.hpp>
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -202,6 +204,28 @@ void bind_stacks(lua_State* state, module& m) {
   });
 }
 
+struct cloud_writer {
+  std::unique_ptr<io::cloud_stream> stream;
+};
+
+std::string print_cloud_writer(const cloud_writer& w) {
+  return message("cloud_writer(", w.stream->size(), " points)");
+}
+
+void bind_cloud_writer(lua_State* state, module& m) {
+  type<cloud_writer>(state, "cloud_writer", print_cloud_writer)
+      .length([](const cloud_writer& w) { return static_cast<std::size_t>(w.stream->size()); })
+      .method("add", {"cloud"},
+              [](cloud_writer& w, const cloud::cloud& piece) {
+                w.stream->add(piece);
+                return self{};
+              })
+      .method("commit", {}, [](cloud_writer& w) { w.stream->commit(); });
+  m.function("cloud_writer", {"path"}, [](const path& file) {
+    return cloud_writer{std::make_unique<io::cloud_stream>(file)};
+  });
+}
+
 void bind_writers(module& m) {
   m.function("write_cloud", {"path", "cloud", "options"},
              [](const path& file, const cloud::cloud& cloud, options& o) {
@@ -240,6 +264,7 @@ void bind_io_data(lua_State* state) {
   module m(state, "io");
   bind_readers(m);
   bind_stacks(state, m);
+  bind_cloud_writer(state, m);
   bind_images(m);
   bind_writers(m);
 }

@@ -8203,6 +8203,8 @@ class output_file {
   /// Throws io_error where the disk is full or the file is not writable.
   void write(const void* data, std::size_t n);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Writes over what has been written, at an offset; a pipe cannot.
+  void write_at(std::uint64_t offset, std::string_view text);
   void commit();
 
  private:
@@ -8313,6 +8315,14 @@ inline void output_file::fail(const char* doing) const {
 
 inline void output_file::write(const void* data, std::size_t n) {
   if (n > 0 && std::fwrite(data, 1, n, file_) != n) fail("write");
+}
+
+inline void output_file::write_at(std::uint64_t offset, std::string_view text) {
+  const auto at = static_cast<off_t>(offset);
+  if (std::fflush(file_) != 0) fail("write");
+  if (::fseeko(file_, at, SEEK_SET) != 0) fail("write");
+  write(text);
+  if (::fseeko(file_, 0, SEEK_END) != 0) fail("write");
 }
 
 inline void output_file::commit() {
@@ -11223,6 +11233,13 @@ void write_ply(const std::filesystem::path& path,
 
 namespace detail {
 
+/// How a position is stored: as floats, or as doubles.
+enum class coordinate { single, wide };
+
+[[nodiscard]] inline coordinate coordinate_for(const Eigen::Vector3d& origin) {
+  return origin.isZero(0) ? coordinate::single : coordinate::wide;
+}
+
 /// Builds header and rows of a PLY file and hands them on in large pieces.
 class ply_writer {
  public:
@@ -11235,8 +11252,17 @@ class ply_writer {
     std::replace(line.begin(), line.end(), '\n', ' ');
     buffer_ += message("comment ", line, "\n");
   }
-  void element(std::string_view name, std::size_t count) {
+  void element(std::string_view name, std::uint64_t count) {
     buffer_ += message("element ", name, " ", count, "\n");
+  }
+  /// As many bytes for any count: a comment takes what is left.
+  void element_for_later(std::string_view name) {
+    later_at_ = buffer_.size();
+    buffer_ += later_text(name, 0);
+  }
+  void set_count(std::string_view name, std::uint64_t count) {
+    flush();
+    file_.write_at(later_at_, later_text(name, count));
   }
   void property(std::string_view type, std::string_view name) {
     buffer_ += message("property ", type, " ", name, "\n");
@@ -11250,11 +11276,10 @@ class ply_writer {
   void number(T value) {
     store(buffer_, value);
   }
-  void position(const Eigen::Vector3d& origin, const Eigen::Vector3f& point) {
-    if (origin.isZero(0)) {
-      for (int k = 0; k < 3; ++k) number(point[k]);
-    } else {
-      for (int k = 0; k < 3; ++k) number(origin[k] + static_cast<double>(point[k]));
+  void position(coordinate as, const Eigen::Vector3d& origin, const Eigen::Vector3f& point) {
+    for (int k = 0; k < 3; ++k) {
+      if (as == coordinate::single) number(point[k]);
+      if (as == coordinate::wide) number(origin[k] + static_cast<double>(point[k]));
     }
   }
   void color(const cloud::color& c) {
@@ -11273,14 +11298,21 @@ class ply_writer {
     file_.write(buffer_);
     buffer_.clear();
   }
+  static std::string later_text(std::string_view name, std::uint64_t count) {
+    constexpr std::size_t most_digits = 20;
+    const std::string digits = message(count);
+    return message("element ", name, " ", digits, "\ncomment ",
+                   std::string(most_digits - digits.size(), '.'), "\n");
+  }
 
   output_file file_;
   std::string buffer_;
+  std::uint64_t later_at_ = 0;
 };
 
-inline void position_properties(ply_writer& out, const Eigen::Vector3d& origin) {
-  const char* type = origin.isZero(0) ? "float" : "double";
-  for (const char* axis : {"x", "y", "z"}) out.property(type, axis);
+inline void position_properties(ply_writer& out, coordinate as) {
+  for (const char* axis : {"x", "y", "z"})
+    out.property(as == coordinate::single ? "float" : "double", axis);
 }
 
 inline void demand_length(std::string_view column, std::size_t found, std::size_t expected) {
@@ -11309,6 +11341,36 @@ inline std::string label_comment(const std::vector<std::string>& names) {
   return comment;
 }
 
+/// What every point of a cloud has.
+inline void cloud_properties(ply_writer& out,
+                             coordinate as,
+                             const cloud::cloud& cloud,
+                             std::span<const cloud::color> colors) {
+  position_properties(out, as);
+  if (!cloud.normals.empty())
+    for (const char* axis : {"nx", "ny", "nz"}) out.property("float", axis);
+  if (!colors.empty()) out.color_properties();
+  if (!cloud.labels.empty()) out.property("uint", "label");
+}
+
+inline void cloud_row(ply_writer& out,
+                      coordinate as,
+                      const cloud::cloud& cloud,
+                      std::span<const cloud::color> colors,
+                      std::size_t i) {
+  out.position(as, cloud.origin, cloud.points[i]);
+  if (!cloud.normals.empty())
+    for (int k = 0; k < 3; ++k) out.number(cloud.normals[i][k]);
+  if (!colors.empty()) out.color(colors[i]);
+  if (!cloud.labels.empty()) out.number(cloud.labels[i]);
+}
+
+inline void check_columns(const cloud::cloud& cloud, std::span<const cloud::color> colors) {
+  demand_length("normals", cloud.normals.size(), cloud.size());
+  demand_length("colors", colors.size(), cloud.size());
+  demand_length("labels", cloud.labels.size(), cloud.size());
+}
+
 }  // namespace detail
 
 inline void write_ply(const std::filesystem::path& path,
@@ -11316,27 +11378,18 @@ inline void write_ply(const std::filesystem::path& path,
                       const ply_cloud_extras& extras) {
   const auto colors =
       extras.colors.empty() ? std::span<const cloud::color>(cloud.colors) : extras.colors;
-  detail::demand_length("normals", cloud.normals.size(), cloud.size());
-  detail::demand_length("colors", colors.size(), cloud.size());
-  detail::demand_length("labels", cloud.labels.size(), cloud.size());
+  detail::check_columns(cloud, colors);
   detail::check_scalars(extras.scalars, cloud.size());
 
+  const auto as = detail::coordinate_for(cloud.origin);
   detail::ply_writer out(path);
   for (const std::string& c : extras.comments) out.comment(c);
   out.element("vertex", cloud.size());
-  detail::position_properties(out, cloud.origin);
-  if (!cloud.normals.empty())
-    for (const char* axis : {"nx", "ny", "nz"}) out.property("float", axis);
-  if (!colors.empty()) out.color_properties();
-  if (!cloud.labels.empty()) out.property("uint", "label");
+  detail::cloud_properties(out, as, cloud, colors);
   for (const ply_scalar& s : extras.scalars) out.property("float", s.name);
   out.end_header();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    out.position(cloud.origin, cloud.points[i]);
-    if (!cloud.normals.empty())
-      for (int k = 0; k < 3; ++k) out.number(cloud.normals[i][k]);
-    if (!colors.empty()) out.color(colors[i]);
-    if (!cloud.labels.empty()) out.number(cloud.labels[i]);
+    detail::cloud_row(out, as, cloud, colors, i);
     for (const ply_scalar& s : extras.scalars) out.number(s.values[i]);
     out.end_row();
   }
@@ -11352,11 +11405,12 @@ inline void write_ply(const std::filesystem::path& path,
   detail::demand_length("labels", mesh.labels.size(), n_faces);
   detail::check_scalars(extras.face_scalars, n_faces);
 
+  const auto as = detail::coordinate_for(mesh.origin);
   detail::ply_writer out(path);
   for (const std::string& c : extras.comments) out.comment(c);
   if (!mesh.label_names.empty()) out.comment(detail::label_comment(mesh.label_names));
   out.element("vertex", mesh.vertices.size());
-  detail::position_properties(out, mesh.origin);
+  detail::position_properties(out, as);
   if (!extras.vertex_colors.empty()) out.color_properties();
   out.element("face", n_faces);
   out.property("list uchar uint", "vertex_indices");
@@ -11365,7 +11419,7 @@ inline void write_ply(const std::filesystem::path& path,
   for (const ply_scalar& s : extras.face_scalars) out.property("float", s.name);
   out.end_header();
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    out.position(mesh.origin, mesh.vertices[i]);
+    out.position(as, mesh.origin, mesh.vertices[i]);
     if (!extras.vertex_colors.empty()) out.color(extras.vertex_colors[i]);
     out.end_row();
   }
@@ -11992,6 +12046,79 @@ inline void write_cloud(const std::filesystem::path& path,
                                  path.extension().string(), "\""));
   }
   write_ply(path, cloud, extras);
+}
+
+}  // namespace aib::io
+
+// aib/io/cloud_stream.hpp
+
+namespace aib::io {
+
+/// A cloud that is written piece by piece as binary little-endian PLY: memory does not grow with
+/// it. x y z are doubles, since the pieces may have several origins.
+///
+///   io::cloud_stream out("all.ply");
+///   for (...) out.add(sample::unproject(...).points);
+///   out.commit();
+///
+/// Without `commit` the old file stays as it was.
+class cloud_stream {
+ public:
+  /// Throws io_error where the file cannot be written.
+  explicit cloud_stream(const std::filesystem::path& path) : out_(path) {}
+
+  /// Adds points, in their order. The first piece that is not empty says what every point has
+  /// (normals, colours, label); throws argument_error where a later one has something else.
+  void add(const cloud::cloud& piece);
+
+  [[nodiscard]] std::uint64_t size() const { return size_; }  ///< points added
+
+  /// Makes it the file; nothing can be added afterwards.
+  void commit();
+
+ private:
+  struct columns {
+    bool normals, colors, labels;
+    friend bool operator==(const columns&, const columns&) = default;
+  };
+
+  void begin(const cloud::cloud& piece);
+
+  detail::ply_writer out_;
+  std::optional<columns> columns_ = {};
+  std::uint64_t size_ = 0;
+};
+
+inline void cloud_stream::begin(const cloud::cloud& piece) {
+  out_.element_for_later("vertex");
+  detail::cloud_properties(out_, detail::coordinate::wide, piece, piece.colors);
+  out_.end_header();
+}
+
+inline void cloud_stream::add(const cloud::cloud& piece) {
+  if (piece.empty()) return;
+  detail::check_columns(piece, piece.colors);
+  const columns found{!piece.normals.empty(), !piece.colors.empty(), !piece.labels.empty()};
+  if (!columns_) {
+    begin(piece);
+    columns_ = found;
+  }
+  if (found != *columns_) {
+    throw argument_error(
+        "io::cloud_stream: a piece with the normals, colours and labels of the first expected, or "
+        "without them where that had none");
+  }
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    detail::cloud_row(out_, detail::coordinate::wide, piece, piece.colors, i);
+    out_.end_row();
+  }
+  size_ += piece.size();
+}
+
+inline void cloud_stream::commit() {
+  if (!columns_) begin({});
+  out_.set_count("vertex", size_);
+  out_.commit();
 }
 
 }  // namespace aib::io
@@ -25376,8 +25503,9 @@ struct linear_options {
 /// axis.
 ///
 /// The first image has its up as near to z as may be; the camera turns about the axis from view to
-/// view. Throws argument_error where the axis has no length, there is no view or one lies along the
-/// axis, or an option is out of its range.
+/// view. A pitch looks down in the image and flies as much higher. Throws argument_error where the
+/// axis has no length, there is no view or one lies along the axis, or an option is out of its
+/// range.
 [[nodiscard]] flight_path linear(const linear_options& options);
 
 /// A path through points, straight between them, the direction of sight given at each and turned
@@ -25422,6 +25550,10 @@ inline flight_path linear(const linear_options& options) {
   Eigen::Vector3d view = detail::across(options.views.front(), axis);
   Eigen::Matrix3d attitude =
       looking(view, std::abs(view.z()) < 0.99 ? Eigen::Vector3d::UnitZ() : axis.cross(view));
+  Eigen::Vector3d up = -attitude.col(1);
+  const double rise = options.path.stand_off * std::tan(options.path.pitch);
+  const Eigen::Vector3d down(-options.path.pitch, 0, 0);
+  attitude = attitude * math::rotation_from(down);
   bool is_back = false;     // flown from `to` to `from`
   bool from_right = false;  // lanes from the positive side
   for (const Eigen::Vector3d& wanted : options.views) {
@@ -25434,6 +25566,7 @@ inline flight_path linear(const linear_options& options) {
     }
     const Eigen::Vector3d swing = angle * axis;
     attitude = math::rotation_from(swing) * attitude;
+    up = math::rotation_from(swing) * up;
     view = next;
     const Eigen::Vector3d aside = axis.cross(view);
     const row_places lanes =
@@ -25441,7 +25574,7 @@ inline flight_path linear(const linear_options& options) {
                    detail::extent_across(attitude, aside, frame), options.path.overlap_across);
     for (std::size_t i = 0; i < lanes.offset.size(); ++i) {
       const double lane = lanes.offset[from_right ? lanes.offset.size() - 1 - i : i];
-      const Eigen::Vector3d offset = lane * aside - away * view;
+      const Eigen::Vector3d offset = lane * aside - away * view + rise * up;
       const math::rigid3 first{attitude, options.from + offset},
           last{attitude, options.to + offset};
       go_to(path, is_back ? last : first);
@@ -25479,9 +25612,9 @@ inline flight_path along(const std::vector<Eigen::Vector3d>& points,
 namespace aib::survey {
 
 struct measure_options {
-  std::vector<std::uint32_t> labels = {};  ///< coverage is that of faces with these; none: all
-  std::size_t samples = 20000;             ///< points on the surface
-  std::size_t columns = 32, rows = 18;     ///< rays of a frame
+  std::vector<std::uint32_t> labels = {};                ///< of the faces that count; none: all
+  std::size_t samples = 20000;                           ///< points on the surface
+  std::size_t columns = 32, rows = 18;                   ///< rays of a frame
   double max_incidence = 75 / math::degrees_per_radian;  ///< radians; a flatter view sees nothing
   double max_distance = std::numeric_limits<double>::infinity();
   double tolerance = 0.001;  ///< what is nearer by a smaller share of the distance does not hide
@@ -25502,7 +25635,7 @@ struct seen_sample {
 struct flight_report {
   std::vector<double> overlap;  ///< of each frame but the last: share of the surface in it that the
                                 ///< next one sees; NaN where it sees none
-  std::vector<float> gsd;       ///< of every ray that hits: depth / focal length
+  std::vector<float> gsd;       ///< of every ray that counts: depth / focal length
   std::size_t n_rays = 0;
   double area = 0;                   ///< of the faces that coverage is about
   std::vector<seen_sample> samples;  ///< evenly by area
@@ -25572,7 +25705,7 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
       const Eigen::Vector3d direction = v.world_from_camera.rotation * *ray;
       const Eigen::Vector3d& from = v.world_from_camera.translation;
       const auto hit = surface.first_hit(from, direction, options.max_distance);
-      if (!hit) continue;
+      if (!hit || !is_among(surface.label_at(hit->place), options.labels)) continue;
       points.push_back(from + hit->distance * direction);
       if (v.camera.has_focal())
         gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
@@ -25602,6 +25735,7 @@ inline namespace AIB_ISA {
 /// views     in the order of flight; poses that are finite
 /// surface   of the mesh
 ///
+/// Where labels are given, faces with others hide what is behind them and do not count.
 /// Both sides of a face count. The same numbers for any number of threads. Throws undefined_error
 /// where there is no view or nothing to cover, argument_error where there is no sample or ray.
 [[nodiscard]] inline flight_report measure(std::span<const math::view> views,

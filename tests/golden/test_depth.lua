@@ -225,6 +225,10 @@ return aib.test {
     t:equal(values["fuse.points"], #cloud)
     local distances = aib.mesh.distances(cloud, aib.io.read_mesh(office .. "/mesh.ply"))
     t:check(distances:median() < 0.02, "median distance " .. distances:median())
+    local whole, points = fuse { voxel = 0 }
+    t:equal(whole["fuse.points"], #points)
+    t:check(#points > 4 * #cloud)
+    t:check(aib.mesh.distances(points, aib.io.read_mesh(office .. "/mesh.ply")):median() < 1e-3)
     local surest = fuse { confidence = office .. "/depth", min = 0.5, rule = "percentile" }
     local share = surest["fuse.kept_share"]  -- at most half: a facade has many pixels of one depth
     t:check(share > 0.1 and share <= 0.5, "kept " .. share)

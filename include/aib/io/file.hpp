@@ -74,6 +74,8 @@ class output_file {
   /// Throws io_error where the disk is full or the file is not writable.
   void write(const void* data, std::size_t n);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Writes over what has been written, at an offset; a pipe cannot.
+  void write_at(std::uint64_t offset, std::string_view text);
   void commit();
 
  private:
@@ -184,6 +186,14 @@ inline void output_file::fail(const char* doing) const {
 
 inline void output_file::write(const void* data, std::size_t n) {
   if (n > 0 && std::fwrite(data, 1, n, file_) != n) fail("write");
+}
+
+inline void output_file::write_at(std::uint64_t offset, std::string_view text) {
+  const auto at = static_cast<off_t>(offset);
+  if (std::fflush(file_) != 0) fail("write");
+  if (::fseeko(file_, at, SEEK_SET) != 0) fail("write");
+  write(text);
+  if (::fseeko(file_, 0, SEEK_END) != 0) fail("write");
 }
 
 inline void output_file::commit() {

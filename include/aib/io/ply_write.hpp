@@ -56,6 +56,13 @@ void write_ply(const std::filesystem::path& path,
 
 namespace detail {
 
+/// How a position is stored: as floats, or as doubles.
+enum class coordinate { single, wide };
+
+[[nodiscard]] inline coordinate coordinate_for(const Eigen::Vector3d& origin) {
+  return origin.isZero(0) ? coordinate::single : coordinate::wide;
+}
+
 /// Builds header and rows of a PLY file and hands them on in large pieces.
 class ply_writer {
  public:
@@ -68,8 +75,17 @@ class ply_writer {
     std::replace(line.begin(), line.end(), '\n', ' ');
     buffer_ += message("comment ", line, "\n");
   }
-  void element(std::string_view name, std::size_t count) {
+  void element(std::string_view name, std::uint64_t count) {
     buffer_ += message("element ", name, " ", count, "\n");
+  }
+  /// As many bytes for any count: a comment takes what is left.
+  void element_for_later(std::string_view name) {
+    later_at_ = buffer_.size();
+    buffer_ += later_text(name, 0);
+  }
+  void set_count(std::string_view name, std::uint64_t count) {
+    flush();
+    file_.write_at(later_at_, later_text(name, count));
   }
   void property(std::string_view type, std::string_view name) {
     buffer_ += message("property ", type, " ", name, "\n");
@@ -83,11 +99,10 @@ class ply_writer {
   void number(T value) {
     store(buffer_, value);
   }
-  void position(const Eigen::Vector3d& origin, const Eigen::Vector3f& point) {
-    if (origin.isZero(0)) {
-      for (int k = 0; k < 3; ++k) number(point[k]);
-    } else {
-      for (int k = 0; k < 3; ++k) number(origin[k] + static_cast<double>(point[k]));
+  void position(coordinate as, const Eigen::Vector3d& origin, const Eigen::Vector3f& point) {
+    for (int k = 0; k < 3; ++k) {
+      if (as == coordinate::single) number(point[k]);
+      if (as == coordinate::wide) number(origin[k] + static_cast<double>(point[k]));
     }
   }
   void color(const cloud::color& c) {
@@ -106,14 +121,21 @@ class ply_writer {
     file_.write(buffer_);
     buffer_.clear();
   }
+  static std::string later_text(std::string_view name, std::uint64_t count) {
+    constexpr std::size_t most_digits = 20;
+    const std::string digits = message(count);
+    return message("element ", name, " ", digits, "\ncomment ",
+                   std::string(most_digits - digits.size(), '.'), "\n");
+  }
 
   output_file file_;
   std::string buffer_;
+  std::uint64_t later_at_ = 0;
 };
 
-inline void position_properties(ply_writer& out, const Eigen::Vector3d& origin) {
-  const char* type = origin.isZero(0) ? "float" : "double";
-  for (const char* axis : {"x", "y", "z"}) out.property(type, axis);
+inline void position_properties(ply_writer& out, coordinate as) {
+  for (const char* axis : {"x", "y", "z"})
+    out.property(as == coordinate::single ? "float" : "double", axis);
 }
 
 inline void demand_length(std::string_view column, std::size_t found, std::size_t expected) {
@@ -142,6 +164,36 @@ inline std::string label_comment(const std::vector<std::string>& names) {
   return comment;
 }
 
+/// What every point of a cloud has.
+inline void cloud_properties(ply_writer& out,
+                             coordinate as,
+                             const cloud::cloud& cloud,
+                             std::span<const cloud::color> colors) {
+  position_properties(out, as);
+  if (!cloud.normals.empty())
+    for (const char* axis : {"nx", "ny", "nz"}) out.property("float", axis);
+  if (!colors.empty()) out.color_properties();
+  if (!cloud.labels.empty()) out.property("uint", "label");
+}
+
+inline void cloud_row(ply_writer& out,
+                      coordinate as,
+                      const cloud::cloud& cloud,
+                      std::span<const cloud::color> colors,
+                      std::size_t i) {
+  out.position(as, cloud.origin, cloud.points[i]);
+  if (!cloud.normals.empty())
+    for (int k = 0; k < 3; ++k) out.number(cloud.normals[i][k]);
+  if (!colors.empty()) out.color(colors[i]);
+  if (!cloud.labels.empty()) out.number(cloud.labels[i]);
+}
+
+inline void check_columns(const cloud::cloud& cloud, std::span<const cloud::color> colors) {
+  demand_length("normals", cloud.normals.size(), cloud.size());
+  demand_length("colors", colors.size(), cloud.size());
+  demand_length("labels", cloud.labels.size(), cloud.size());
+}
+
 }  // namespace detail
 
 inline void write_ply(const std::filesystem::path& path,
@@ -149,27 +201,18 @@ inline void write_ply(const std::filesystem::path& path,
                       const ply_cloud_extras& extras) {
   const auto colors =
       extras.colors.empty() ? std::span<const cloud::color>(cloud.colors) : extras.colors;
-  detail::demand_length("normals", cloud.normals.size(), cloud.size());
-  detail::demand_length("colors", colors.size(), cloud.size());
-  detail::demand_length("labels", cloud.labels.size(), cloud.size());
+  detail::check_columns(cloud, colors);
   detail::check_scalars(extras.scalars, cloud.size());
 
+  const auto as = detail::coordinate_for(cloud.origin);
   detail::ply_writer out(path);
   for (const std::string& c : extras.comments) out.comment(c);
   out.element("vertex", cloud.size());
-  detail::position_properties(out, cloud.origin);
-  if (!cloud.normals.empty())
-    for (const char* axis : {"nx", "ny", "nz"}) out.property("float", axis);
-  if (!colors.empty()) out.color_properties();
-  if (!cloud.labels.empty()) out.property("uint", "label");
+  detail::cloud_properties(out, as, cloud, colors);
   for (const ply_scalar& s : extras.scalars) out.property("float", s.name);
   out.end_header();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    out.position(cloud.origin, cloud.points[i]);
-    if (!cloud.normals.empty())
-      for (int k = 0; k < 3; ++k) out.number(cloud.normals[i][k]);
-    if (!colors.empty()) out.color(colors[i]);
-    if (!cloud.labels.empty()) out.number(cloud.labels[i]);
+    detail::cloud_row(out, as, cloud, colors, i);
     for (const ply_scalar& s : extras.scalars) out.number(s.values[i]);
     out.end_row();
   }
@@ -185,11 +228,12 @@ inline void write_ply(const std::filesystem::path& path,
   detail::demand_length("labels", mesh.labels.size(), n_faces);
   detail::check_scalars(extras.face_scalars, n_faces);
 
+  const auto as = detail::coordinate_for(mesh.origin);
   detail::ply_writer out(path);
   for (const std::string& c : extras.comments) out.comment(c);
   if (!mesh.label_names.empty()) out.comment(detail::label_comment(mesh.label_names));
   out.element("vertex", mesh.vertices.size());
-  detail::position_properties(out, mesh.origin);
+  detail::position_properties(out, as);
   if (!extras.vertex_colors.empty()) out.color_properties();
   out.element("face", n_faces);
   out.property("list uchar uint", "vertex_indices");
@@ -198,7 +242,7 @@ inline void write_ply(const std::filesystem::path& path,
   for (const ply_scalar& s : extras.face_scalars) out.property("float", s.name);
   out.end_header();
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    out.position(mesh.origin, mesh.vertices[i]);
+    out.position(as, mesh.origin, mesh.vertices[i]);
     if (!extras.vertex_colors.empty()) out.color(extras.vertex_colors[i]);
     out.end_row();
   }

@@ -147,6 +147,24 @@ function io.read_cloud(path, options) end
 ---@param options? { scalars?: table<string, aib.Distances|number[]>, colors?: integer[][], comments?: string[] }  # one value, one {red, green, blue} a point
 function io.write_cloud(path, cloud, options) end
 
+---A cloud that is written piece by piece: memory does not grow with it. `#writer` is the number of points so far.
+---Without `commit` the old file stays.
+---@class aib.CloudWriter
+local cloud_writer = {}
+
+---Adds points; every piece has the columns (normals, colours, labels) of the first.
+---@param cloud aib.Cloud
+---@return aib.CloudWriter self
+function cloud_writer:add(cloud) end
+
+---Makes it the file; nothing can be added afterwards.
+function cloud_writer:commit() end
+
+---Starts a binary PLY file with double coordinates.
+---@param path string
+---@return aib.CloudWriter writer
+function io.cloud_writer(path) end
+
 ---The triangles of a PLY, OBJ, STL or GLB file; polygons become fans. Face labels of PLY and the
 ---nodes of GLB become labels.
 ---@param path string
