@@ -24,6 +24,7 @@ local function json_of(path) return aib.json.decode(aib.system.read_text(path), 
 --- Lua text of a table of texts, numbers and tables; fields sorted.
 local function literal(value, indent)
   if type(value) ~= "table" then return type(value) == "string" and ("%q"):format(value) or aib.json.number(value) end
+  if type(value[1]) == "number" then return "{ " .. table.concat(value, ", ") .. " }" end
   local inner, parts, keys = indent .. "  ", {}, {}
   for _, item in ipairs(value) do parts[#parts + 1] = inner .. literal(item, inner) end
   for key in pairs(value) do
@@ -50,7 +51,8 @@ local function scenes_in(folder)
     local truth = "gt/" .. name
     scenes[#scenes + 1] = {
       name = name, conditions = conditions_of(folder, name), poses = truth .. "/poses",
-      depth = truth .. "/depth/{stem}.exr", mesh = truth .. "/mesh.ply", points = truth .. "/points.ply",
+      depth = truth .. "/depth/{stem}.exr", labels = truth .. "/labels/{stem}.png", mesh = truth .. "/mesh.ply",
+      points = truth .. "/points.ply",
       crop = json_of(("%s/%s/plan.json"):format(folder, truth)).crop,
     }
   end

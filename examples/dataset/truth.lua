@@ -30,6 +30,6 @@ local seen = {}
 for k, views in ipairs(aib.render.visible(scene, samples, trajectory, cameras)) do
   if views >= min_views then seen[#seen + 1] = samples[k] end
 end
-aib.io.write_cloud(folder .. "/points.ply", aib.cloud.from_points(seen))
+aib.io.write_cloud(folder .. "/points.ply", aib.mesh.with_labels(aib.cloud.from_points(seen), mesh))
 print(("%s: %d frames, %d of %d points in %d views or more"):format(folder, written.n_frames + written.n_kept, #seen,
   #samples, min_views))
