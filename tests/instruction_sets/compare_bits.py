@@ -29,6 +29,12 @@ def eigen_flags():
     return found.stdout.split()
 
 
+def near_addresses():
+    """The sanitizer's memory does not fit around addresses that the system draws too far apart."""
+    words = ["setarch", "-R"]
+    return words if shutil.which("setarch") and subprocess.run([*words, "true"], capture_output=True).returncode == 0 else []
+
+
 def printed(root, folder, name, compiler, flags, threads):
     """(name, what the program prints) for each number of threads; None where this processor cannot run it."""
     program = pathlib.Path(folder, name.replace(" ", "_"))
@@ -36,9 +42,7 @@ def printed(root, folder, name, compiler, flags, threads):
     command = [compiler, "-std=c++20", "-O1", "-ffp-contract=off", "-pthread", f"-I{include}", *flags, *eigen_flags()]
     subprocess.run([*command, root / "tests/instruction_sets/bits.cpp", "-o", program], check=True)
     for n in threads:
-        # The sanitizer's memory does not fit around addresses that are drawn too far apart.
-        words = ["setarch", "-R", program] if flags == SANITIZED else [program]
-        run = subprocess.run([*words, str(n)], capture_output=True, text=True)
+        run = subprocess.run([*(near_addresses() if flags == SANITIZED else []), program, str(n)], capture_output=True, text=True)
         if run.returncode not in (0, -4):
             print(run.stderr[-4000:])
         yield f"{name}, threads {n}", None if run.returncode == -4 else run.stdout if run.returncode == 0 else ""  # SIGILL
