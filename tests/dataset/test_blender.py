@@ -78,6 +78,7 @@ def check_rendering(bench):
     bench.check(bench.render("second", "--frames", "0:2") == 0, "a stopped run goes on")
     bench.check(files(images) == wanted and (images / "000000.png").stat().st_mtime_ns == kept,
                 "the missing frame alone is made, nothing is left behind")
+    bench.check(bench.render("second", "--soiling", "high") == 1, "pictures of another soiling are not mixed with these")
     bench.check(bench.render("third", "--mesh", folder / "no.ply") == 1, "a mesh that is not there is exit code 1")
 
 

@@ -75,7 +75,17 @@ def prepare(options):
         setattr(here.render, "use_stamp_" + what, False)  # two runs give the same bytes
     return {"blender": bpy.app.version_string, "device": use_device(options.device),
             "denoiser": use_denoiser(options.denoise), "samples": options.samples, "seed": options.seed,
-            "soiling": options.soiling}
+            "soiling": options.soiling, "width": options.width}
+
+
+def _keep_facts(path, facts):
+    """Frames that were drawn otherwise are not mixed with these; the machine may differ."""
+    if path.exists():
+        before = json.loads(path.read_text())
+        for name in ("samples", "seed", "soiling", "width", "denoiser"):
+            if before.get(name) != facts[name]:
+                raise ValueError(f"{path.parent}: has pictures with {name} {before.get(name)}, not {facts[name]}")
+    path.write_text(json.dumps(facts, indent=2, sort_keys=True) + "\n")
 
 
 def _write(frame, folder, suffix, draw):
@@ -153,7 +163,7 @@ def run(options):
     out.mkdir(parents=True, exist_ok=True)
     facts = prepare(options)
     if "images" in maps:
-        (out / "render.json").write_text(json.dumps(facts, indent=2, sort_keys=True) + "\n")
+        _keep_facts(out / "render.json", facts)
         images(frames, out, options)
     if "depth" in maps:
         depth(frames, out, options)
