@@ -56,6 +56,7 @@ python3-matplotlib   python matplotlib
 nodejs               program node
 npm                  program npm
 chromium             program chromium
+librsvg2-bin         program rsvg-convert
 '
 
 is_here() {  # is_here KIND NAME [VERSION]

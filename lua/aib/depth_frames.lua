@@ -176,16 +176,15 @@ end
 
 --- Writes the error images of frames one below the other. `records` are the errors of as many of `files` as are shown.
 function M.write_sheet(path, records, files, options)
-  local by_name, pictures = {}, {}
+  local by_name, frames = {}, {}
   for _, frame in ipairs(files) do by_name[frame.name] = frame end
   for i, record in ipairs(records) do
     local frame = by_name[record.name]
-    local est <close> = aib.io.read_depth(frame.estimate, options.estimate)
-    local ref <close> = aib.io.read_depth(frame.reference, { scale = options.reference.scale, width = est.width,
-      height = est.height, rule = options.rule })
-    pictures[i] = aib.depth.error_image(est, ref, { transform = { scale = record.scale, shift = record.shift } })
+    frames[i] = { estimate = frame.estimate, reference = frame.reference,
+      transform = { scale = record.scale, shift = record.shift } }
   end
-  aib.io.write_image(path, aib.raster.contact_sheet(pictures, { columns = 1, width = 960 }))
+  aib.io.write_image(path, aib.report.montage(frames,
+    { estimate = options.estimate, reference = options.reference, rule = options.rule }))
 end
 
 --- Shows errors along the frames, and some frames, in the page of a report that has one.

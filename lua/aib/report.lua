@@ -14,8 +14,11 @@ report.__index = report
 -- What a page draws: report:curve, report:cloud, ...
 for name, method in pairs(views) do report[name] = method end
 
---- aib.report.plot is loaded where it is used first.
-setmetatable(report, { __index = function(_, name) return name == "plot" and require "aib.report.plot" or nil end })
+--- aib.report.plot and montage are loaded where they are used first.
+local drawn_elsewhere <const> = { plot = true, montage = true }
+setmetatable(report, {
+  __index = function(_, name) return drawn_elsewhere[name] and require("aib.report." .. name) or nil end,
+})
 
 local directions <const> = { lower = true, higher = true }
 

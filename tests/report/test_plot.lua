@@ -80,7 +80,31 @@ return aib.test {
     check_markup(t, plot.lines({ { label = "", x = {}, y = {} } }, {}))
   end,
 
-  ["a figure is written as SVG"] = function(t)
+  ["a figure is written as SVG, and as PNG where rsvg-convert is"] = function(t)
     t:raises(".svg", plot.write, "figure.pdf", "")
+    local path, figure = os.tmpname(), plot.lines({ { label = "a", x = { 1, 2 }, y = { 1, 2 } } }, { width = 300 })
+    plot.write(path .. ".svg", figure)
+    t:contains(aib.system.read_text(path .. ".svg"), figure)
+    os.remove(path .. ".svg")
+    os.remove(path)
+    if not os.execute "command -v rsvg-convert >/dev/null 2>&1" then
+      t:raises("rsvg%-convert", plot.write, path .. ".png", figure)
+      t:skip("rsvg-convert is not here")
+    end
+    plot.write(path .. ".png", figure)
+    t:contains(tostring(aib.io.read_image(path .. ".png")), "image(600x")
+    os.remove(path .. ".png")
+  end,
+
+  ["a montage has a row a frame, of maps or of files"] = function(t)
+    local path, map = os.tmpname() .. ".npy", aib.depth.map { { 1, 2 }, { 3, 4 } }
+    aib.io.write_depth(path, map)
+    local sheet = aib.report.montage({ { estimate = map, reference = path }, { estimate = path, reference = map },
+      { estimate = map, reference = map, transform = { scale = 2, shift = 0 } } }, { width = 300 })
+    local one = aib.report.montage({ { estimate = map, reference = map } }, { width = 300 })
+    t:equal(sheet.width, one.width)
+    t:check(sheet.height > 2 * one.height)
+    t:raises("widht", aib.report.montage, {}, { widht = 3 })
+    os.remove(path)
   end,
 }

@@ -43,7 +43,7 @@ function plot.precision_recall(curves, options) end
 ---@return string svg
 function plot.lines(lines, options) end
 
----Writes a figure; the name ends in .svg.
+---Writes a figure as .svg, or as .png where the program rsvg-convert (librsvg, cairo) is found.
 ---@param path string
 ---@param figure string
 function plot.write(path, figure) end

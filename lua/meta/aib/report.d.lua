@@ -111,6 +111,13 @@ function instance:mesh(spec) end
 ---@param spec { estimate: aib.Trajectory, reference: aib.Trajectory, missing?: string[], errors?: table<string, number> }
 function instance:cameras(spec) end
 
+---Estimate, truth and relative error of depth maps as one picture, a row a frame. Maps that are paths are read with
+---the options `estimate` and `reference` of `aib.io.read_depth`, the truth at the size of the estimate.
+---@param frames { estimate: aib.DepthMap|string, reference: aib.DepthMap|string, transform?: aib.Affine }[]
+---@param options? { columns: integer, width: integer, estimate: table, reference: table, rule: "centre"|"floor" }  # 1 column, 960 pixels a row
+---@return aib.Image sheet
+function report.montage(frames, options) end
+
 ---A new report.
 ---@param info table  # name, title, cite, version
 ---@return aib.Report
