@@ -64,6 +64,29 @@ return aib.test {
     t:raises("a mesh or a render scene expected", function() aib.render.depth(camera, camera, pose) end)
   end,
 
+  ["frames go into a folder, and a stopped run is taken up"] = function(t)
+    local folder = os.tmpname()
+    os.remove(folder)
+    local plan = aib.survey.fly(pass { stand_off = 5 }, { frames = 3, name = "a/%03d.png" })
+    local function render(options)
+      options.folder = folder
+      return aib.render.frames(wall(), plan.trajectory, camera, options)
+    end
+    local all = { "depth", "range", "normals", "labels" }
+    local first = render { maps = all, frames = { 1, 3 } }
+    t:equal({ first.n_frames, first.n_kept, #first.files }, { 2, 0, 8 })
+    t:equal(first.files[2], folder .. "/range/a/000.exr")
+    local second = render { maps = all, existing = "keep" }
+    t:equal({ second.n_frames, second.n_kept }, { 1, 2 })
+    t:near(aib.io.read_depth(folder .. "/depth/a/001.exr"):at(40, 20), 5, 1e-6)
+    t:equal(aib.io.read_image(folder .. "/labels/a/002.png"):at(1, 1), 0)
+    t:equal(aib.io.read_array(folder .. "/normals/a/000.npy").shape, { 54, 96, 3 })
+    plan.trajectory = aib.survey.fly(pass { stand_off = 5 }, { frames = 2, name = "../%d.png" }).trajectory
+    t:raises("is no name of an image", function() render {} end)
+    t:raises("'folder'", function() aib.render.frames(wall(), plan.trajectory, camera, {}) end)
+    os.execute("rm -r " .. folder)
+  end,
+
   ["telemetry is wrong by what is asked for"] = function(t)
     local plan = aib.survey.fly(pass { stand_off = 5 }, { frames = 20 })
     local prior = aib.survey.perturb(plan.trajectory, { position_bias = { 0, 0, 2 }, dropout = 0.5 })
