@@ -82,29 +82,29 @@ return aib.test {
 
   ["a figure is written as SVG, and as PNG where rsvg-convert is"] = function(t)
     t:raises(".svg", plot.write, "figure.pdf", "")
-    local path, figure = os.tmpname(), plot.lines({ { label = "a", x = { 1, 2 }, y = { 1, 2 } } }, { width = 300 })
-    plot.write(path .. ".svg", figure)
-    t:contains(aib.system.read_text(path .. ".svg"), figure)
-    os.remove(path .. ".svg")
-    os.remove(path)
+    local base, figure = os.tmpname(), plot.lines({ { label = "a", x = { 1, 2 }, y = { 1, 2 } } }, { width = 300 })
+    plot.write(base .. ".svg", figure)
+    t:contains(aib.system.read_text(base .. ".svg"), figure)
+    os.remove(base .. ".svg")
+    os.remove(base)
     if not os.execute "command -v rsvg-convert >/dev/null 2>&1" then
-      t:raises("rsvg%-convert", plot.write, path .. ".png", figure)
+      t:raises("rsvg%-convert", plot.write, base .. ".png", figure)
       t:skip("rsvg-convert is not here")
     end
-    plot.write(path .. ".png", figure)
-    t:contains(tostring(aib.io.read_image(path .. ".png")), "image(600x")
-    os.remove(path .. ".png")
+    plot.write(base .. ".png", figure)
+    t:contains(tostring(aib.io.read_image(base .. ".png")), "image(600x")
+    os.remove(base .. ".png")
   end,
 
   ["a montage has a row a frame, of maps or of files"] = function(t)
-    local path, map = os.tmpname() .. ".npy", aib.depth.map { { 1, 2 }, { 3, 4 } }
-    aib.io.write_depth(path, map)
-    local sheet = aib.report.montage({ { estimate = map, reference = path }, { estimate = path, reference = map },
+    local file, map = os.tmpname() .. ".npy", aib.depth.map { { 1, 2 }, { 3, 4 } }
+    aib.io.write_depth(file, map)
+    local sheet = aib.report.montage({ { estimate = map, reference = file }, { estimate = file, reference = map },
       { estimate = map, reference = map, transform = { scale = 2, shift = 0 } } }, { width = 300 })
     local one = aib.report.montage({ { estimate = map, reference = map } }, { width = 300 })
     t:equal(sheet.width, one.width)
     t:check(sheet.height > 2 * one.height)
     t:raises("widht", aib.report.montage, {}, { widht = 3 })
-    os.remove(path)
+    os.remove(file)
   end,
 }
