@@ -125,6 +125,7 @@ return aib.test {
     local est, ref = { a = camera(505) }, { a = camera(500) }
     t:near(aib.pose.focal_error(est, ref).mre, 0.01, 1e-12)
     t:near(aib.pose.focal_error(est, 500).mre, 0.01, 1e-12)
+    t:near(aib.pose.focal_error(est, ref).each.a, 0.01, 1e-12)
     t:near(aib.pose.intrinsics_error(est, ref).principal_point_px, 0, 1e-12)
     local pixel = aib.math.project(ref.a, aib.math.unproject(ref.a, { 12.5, 34.5 }))
     t:near(pixel[1], 12.5, 1e-9)
