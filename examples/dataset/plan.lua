@@ -17,9 +17,9 @@ local function usage()
   os.exit(2)
 end
 
---- What the flight sees of the mesh.
-local function measured(plan, mesh)
-  local report = aib.survey.measure(plan.trajectory, plan.camera, mesh)
+--- What the flight sees of the asset; behind it the ground goes on.
+local function measured(plan, mesh, labels)
+  local report = aib.survey.measure(plan.trajectory, plan.camera, mesh, { labels = labels })
   return { overlap = report.overlap, gsd_mm = report.gsd_mm, hit_share = report.hit_share }
 end
 
@@ -47,8 +47,8 @@ for _, kind in ipairs { "csv", "kml", "plan" } do
   aib.io.write_waypoints(folder .. "/waypoints." .. kind, trajectory, { origin = waypoint_origin })
 end
 local facts = { scene = name, scale = scale, crop = scene.crop, planned = planned(plan),
-  measured = measured(plan, mesh) }
+  measured = measured(plan, mesh, scene.labels) }
 aib.system.write_text(folder .. "/plan.json", aib.json.encode(facts) .. "\n")
-print(("%s, %s: %d frames of %d x %d, %.1f m, overlap %.1f %% planned, %.1f %% measured"):format(name, scale,
+print(("%s, %s: %d frames of %d x %d, %.1f m, overlap %.1f %% planned, %.1f %% measured (median)"):format(name, scale,
   plan.n_frames, plan.camera.width, plan.camera.height, plan.length, 100 * plan.overlap,
-  100 * facts.measured.overlap.mean))
+  100 * facts.measured.overlap.median))

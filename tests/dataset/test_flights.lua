@@ -21,6 +21,8 @@ for name, n in pairs(paper_frames) do
     scene.build():save(path)
     local mesh = aib.render.scene(aib.io.read_mesh(path))
     os.remove(path)
+    local seen = aib.survey.measure(paper.trajectory, paper.camera, mesh, { labels = scene.labels })
+    t:near(seen.overlap.median, paper.overlap, 0.03)
     local tiny, small = flights.plan(scene, "tiny", mesh), flights.plan(scene, "small", mesh)
     t:equal({ tiny.n_frames, tiny.camera.width }, { 24, 320 })
     t:check(small.n_frames >= 140 and small.camera.width == 960)

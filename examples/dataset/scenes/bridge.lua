@@ -175,6 +175,8 @@ end
 return {
   name = "bridge",
   asset = { low = { -33, -7.5, 6 }, high = { 33, 7.5, deck + 0.6 + rise } },
+  --- Faces that are of the asset alone.
+  labels = { "arch", "cable", "panel", "glass", "road", "rail", "kerb", "footpath" },
   deck = deck, span = span, rise = rise, arch_y = arch_y, arch_z = arch_z,
   crop = { min = { -36, -9, 2 }, max = { 36, 9, 22 } },
   build = function()

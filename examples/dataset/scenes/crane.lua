@@ -316,6 +316,8 @@ end
 return {
   name = "crane",
   asset = { low = { -mast, -mast, 0 }, high = { mast, mast, head } },
+  --- Faces that are of the asset alone.
+  labels = { "truss", "cabin", "frame", "cable", "grating", "sign", "hook", "cabinet" },
   jib = { from = { 0.8, 0, head + 1.5 }, to = { 33, 0, head + 1.5 } },
   crop = { min = { -13, -4, -0.5 }, max = { 35, 4, 42 } },
   build = function()

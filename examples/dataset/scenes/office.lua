@@ -286,6 +286,8 @@ return {
   name = "office",
   --- What the drone flies round: the building without its site.
   asset = { low = { -15.1, -10.4, 0 }, high = { 15.1, 10.4, 16 } },
+  --- Faces that are of the asset alone.
+  labels = { "glass", "frame", "wall" },
   crop = { min = { -18, -15.5, -0.5 }, max = { 18, 14, 22 } },
   build = function()
     local scene = solids.new()
