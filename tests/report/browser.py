@@ -66,7 +66,7 @@ def main(aib_lua):
         skip("node and npm are not here")
     if not browser:
         skip("no Chromium is here")
-    place = pathlib.Path(aib_lua).resolve().parent.parent / "tests" / "report"
+    place = pathlib.Path(aib_lua).parent.parent / "tests" / "report"
     place.mkdir(parents=True, exist_ok=True)
     install(place / "driver")
     with tempfile.TemporaryDirectory() as folder:
@@ -77,4 +77,4 @@ def main(aib_lua):
         sys.exit(subprocess.run(command).returncode)
 
 
-main(sys.argv[1])
+main(str(pathlib.Path(sys.argv[1]).resolve()))
