@@ -56,7 +56,8 @@ files_of() {
 }
 
 seeds_of() {
-  files_of "$1" examples/data ../shared/golden/zoo | xargs -r -d '\n' find -size -64k | awk 'NR % 7 == 1' | head -n 60
+  files_of "$1" examples/data ../shared/golden/zoo |
+    xargs -r -d '\n' sh -c 'find "$@" -size -64k' find | awk 'NR % 7 == 1' | head -n 60
   find tests/fuzz/seeds -name "$1-*" | sort
 }
 

@@ -104,12 +104,20 @@ function check.choice(name, input)
   return ("one of %s expected"):format(table.concat(input.choices, ", ")), suggest.hint(name, input.choices)
 end
 
+function check.path(path)
+  if path:find("\0", 1, true) then return "a name without zero bytes expected" end
+end
+
 function check.file(path)
+  local wrong = check.path(path)
+  if wrong then return wrong end
   if system.is_folder(path) then failure.raise("io", path .. ": a file expected, found a folder") end
   if not system.is_file(path) then failure.raise("io", path .. ": no such file") end
 end
 
 function check.folder(path)
+  local wrong = check.path(path)
+  if wrong then return wrong end
   if system.is_file(path) then failure.raise("io", path .. ": a folder expected, found a file") end
   if not system.is_folder(path) then failure.raise("io", path .. ": no such folder") end
 end
