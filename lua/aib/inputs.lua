@@ -105,7 +105,7 @@ function check.choice(name, input)
 end
 
 function check.path(path)
-  if path:find("\0", 1, true) then return "a name without zero bytes expected" end
+  if path:find("\0", 1, true) then return "a path expected" end
 end
 
 function check.file(path)

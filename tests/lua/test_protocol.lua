@@ -96,8 +96,9 @@ return aib.test {
     says({ kind = "integer" }, "1e400", "an integer expected, found '1e400'")
     says({ kind = "choice", choices = { "centre", "floor" } }, "center",
       "one of centre, floor expected, found 'center'")
-    says({ kind = "path" }, "a\0b", "a name without zero bytes expected, found 'a\0b'")
-    says({ kind = "file" }, "a\0b", "a name without zero bytes expected, found 'a\0b'")
+    says({ kind = "path" }, "a\0b", "a path expected, found 'a\0b'")
+    says({ kind = "file" }, "a\0b", "a path expected, found 'a\0b'")
+    t:contains(refusal(t, { key = { kind = "file", default = "a\0b" } }, {}), "a path expected, found 'a\0b'")
     says({ kind = "list", of = "integer" }, "1,x", "an integer expected, found 'x'")
     says({ kind = "flag", default = nil, position = 1 }, "maybe", "true or false expected, found 'maybe'")
     says({ kind = "path" }, "", "a path expected, found ''")
