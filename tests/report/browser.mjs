@@ -17,7 +17,7 @@ const faults = [];
 
 /// A page of the folder, which may ask nothing and say nothing wrong.
 async function open(name, settings = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...settings });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", ...settings });
   const page = await context.newPage();
   page.setDefaultTimeout(20000);
   page.on("console", (message) => {
