@@ -65,4 +65,15 @@ TEST_CASE("no piece is an empty cloud") {
   CHECK(io::read_ply_cloud(path).empty());
 }
 
+TEST_CASE("a stream that is committed, or could not write, is closed") {
+  io::cloud_stream done(scratch.folder() / "done.ply");
+  done.commit();
+  CHECK_THROWS_AS(done.commit(), argument_error);
+  CHECK_THROWS_AS(done.add(piece(0, 1)), argument_error);
+  if (!std::filesystem::exists("/dev/full")) return;
+  io::cloud_stream full("/dev/full");
+  CHECK_THROWS_AS(full.add(piece(0, 100'000)), io_error);
+  CHECK_THROWS_AS(full.commit(), argument_error);
+}
+
 }  // namespace test_cloud_stream

@@ -27,12 +27,13 @@ class cloud_stream {
   explicit cloud_stream(const std::filesystem::path& path) : out_(path) {}
 
   /// Adds points, in their order. The first piece that is not empty says what every point has
-  /// (normals, colours, label); throws argument_error where a later one has something else.
+  /// (normals, colours, label); throws argument_error where a later one has something else, or
+  /// where the stream is closed: by commit, or by a piece that could not be written.
   void add(const cloud::cloud& piece);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }  ///< points added
 
-  /// Makes it the file; nothing can be added afterwards.
+  /// Makes it the file and closes the stream.
   void commit();
 
  private:
@@ -41,12 +42,18 @@ class cloud_stream {
     friend bool operator==(const columns&, const columns&) = default;
   };
 
+  void demand_open() const;
   void begin(const cloud::cloud& piece);
 
   detail::ply_writer out_;
+  bool is_open_ = true;
   std::optional<columns> columns_ = {};
   std::uint64_t size_ = 0;
 };
+
+inline void cloud_stream::demand_open() const {
+  if (!is_open_) throw argument_error("io::cloud_stream: an open stream expected, this is closed");
+}
 
 inline void cloud_stream::begin(const cloud::cloud& piece) {
   out_.element_for_later("vertex");
@@ -55,26 +62,29 @@ inline void cloud_stream::begin(const cloud::cloud& piece) {
 }
 
 inline void cloud_stream::add(const cloud::cloud& piece) {
+  demand_open();
   if (piece.empty()) return;
   detail::check_columns(piece, piece.colors);
   const columns found{!piece.normals.empty(), !piece.colors.empty(), !piece.labels.empty()};
-  if (!columns_) {
-    begin(piece);
-    columns_ = found;
-  }
-  if (found != *columns_) {
+  if (columns_ && found != *columns_) {
     throw argument_error(
         "io::cloud_stream: a piece with the normals, colours and labels of the first expected, or "
         "without them where that had none");
   }
+  is_open_ = false;  // until the piece is whole
+  if (!columns_) begin(piece);
+  columns_ = found;
   for (std::size_t i = 0; i < piece.size(); ++i) {
     detail::cloud_row(out_, detail::coordinate::wide, piece, piece.colors, i);
     out_.end_row();
   }
   size_ += piece.size();
+  is_open_ = true;
 }
 
 inline void cloud_stream::commit() {
+  demand_open();
+  is_open_ = false;
   if (!columns_) begin({});
   out_.set_count("vertex", size_);
   out_.commit();
