@@ -68,51 +68,43 @@ struct f64x8 {
 
 #else
 
-/// Sixteen floats that are calculated together, see simd.hpp.
-struct f32x16 {
-  static constexpr std::size_t width = 16;
-  f32x8 lo, hi;
+/// Twice as many lanes, in halves.
+template <class Half, class Scalar>
+struct doubled_lanes {
+  static constexpr std::size_t width = 2 * Half::width;
+  Half lo, hi;
 
-  static f32x16 load(const float* p) { return {f32x8::load(p), f32x8::load(p + 8)}; }
-  static f32x16 broadcast(float x) { return {f32x8::broadcast(x), f32x8::broadcast(x)}; }
-  void store(float* p) const {
+  static doubled_lanes load(const Scalar* p) {
+    return {Half::load(p), Half::load(p + Half::width)};
+  }
+  static doubled_lanes convert(const float* p) {
+    return {Half::convert(p), Half::convert(p + Half::width)};
+  }
+  static doubled_lanes broadcast(Scalar x) { return {Half::broadcast(x), Half::broadcast(x)}; }
+  void store(Scalar* p) const {
     lo.store(p);
-    hi.store(p + 8);
+    hi.store(p + Half::width);
   }
 
-  friend f32x16 operator+(f32x16 a, f32x16 b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend f32x16 operator-(f32x16 a, f32x16 b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend f32x16 operator*(f32x16 a, f32x16 b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend f32x16 min(f32x16 a, f32x16 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend f32x16 max(f32x16 a, f32x16 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend unsigned less(f32x16 a, f32x16 b) { return less(a.lo, b.lo) | less(a.hi, b.hi) << 8; }
-};
-
-/// Eight doubles that are calculated together, see simd.hpp.
-struct f64x8 {
-  static constexpr std::size_t width = 8;
-  f64x4 lo, hi;
-
-  static f64x8 load(const double* p) { return {f64x4::load(p), f64x4::load(p + 4)}; }
-  static f64x8 convert(const float* p) { return {f64x4::convert(p), f64x4::convert(p + 4)}; }
-  static f64x8 broadcast(double x) { return {f64x4::broadcast(x), f64x4::broadcast(x)}; }
-  void store(double* p) const {
-    lo.store(p);
-    hi.store(p + 4);
+  using lanes = doubled_lanes;
+  friend lanes operator+(lanes a, lanes b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend lanes operator-(lanes a, lanes b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend lanes operator*(lanes a, lanes b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend lanes operator/(lanes a, lanes b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend lanes min(lanes a, lanes b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend lanes max(lanes a, lanes b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend unsigned less(lanes a, lanes b) {
+    return less(a.lo, b.lo) | less(a.hi, b.hi) << Half::width;
   }
-
-  friend f64x8 operator+(f64x8 a, f64x8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend f64x8 operator-(f64x8 a, f64x8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend f64x8 operator*(f64x8 a, f64x8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend f64x8 operator/(f64x8 a, f64x8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
-  friend f64x8 min(f64x8 a, f64x8 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend f64x8 max(f64x8 a, f64x8 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+  friend lanes choose(lanes a, lanes b, lanes x, lanes y) {
     return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
   }
-  friend f64x8 mantissa(f64x8 a) { return {mantissa(a.lo), mantissa(a.hi)}; }
-  friend f64x8 exponent(f64x8 a) { return {exponent(a.lo), exponent(a.hi)}; }
+  friend lanes mantissa(lanes a) { return {mantissa(a.lo), mantissa(a.hi)}; }
+  friend lanes exponent(lanes a) { return {exponent(a.lo), exponent(a.hi)}; }
 };
+
+using f32x16 = doubled_lanes<f32x8, float>;
+using f64x8 = doubled_lanes<f64x4, double>;
 
 #endif
 
