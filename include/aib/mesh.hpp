@@ -8,6 +8,7 @@
 #include <aib/mesh/distances.hpp>
 #include <aib/mesh/edges.hpp>
 #include <aib/mesh/face_scores.hpp>
+#include <aib/mesh/finite_triangles.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/offsets.hpp>
 #include <aib/mesh/ray_surface.hpp>

@@ -2956,51 +2956,43 @@ struct f64x8 {
 
 #else
 
-/// Sixteen floats that are calculated together, see simd.hpp.
-struct f32x16 {
-  static constexpr std::size_t width = 16;
-  f32x8 lo, hi;
+/// Twice as many lanes, in halves.
+template <class Half, class Scalar>
+struct doubled_lanes {
+  static constexpr std::size_t width = 2 * Half::width;
+  Half lo, hi;
 
-  static f32x16 load(const float* p) { return {f32x8::load(p), f32x8::load(p + 8)}; }
-  static f32x16 broadcast(float x) { return {f32x8::broadcast(x), f32x8::broadcast(x)}; }
-  void store(float* p) const {
+  static doubled_lanes load(const Scalar* p) {
+    return {Half::load(p), Half::load(p + Half::width)};
+  }
+  static doubled_lanes convert(const float* p) {
+    return {Half::convert(p), Half::convert(p + Half::width)};
+  }
+  static doubled_lanes broadcast(Scalar x) { return {Half::broadcast(x), Half::broadcast(x)}; }
+  void store(Scalar* p) const {
     lo.store(p);
-    hi.store(p + 8);
+    hi.store(p + Half::width);
   }
 
-  friend f32x16 operator+(f32x16 a, f32x16 b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend f32x16 operator-(f32x16 a, f32x16 b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend f32x16 operator*(f32x16 a, f32x16 b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend f32x16 min(f32x16 a, f32x16 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend f32x16 max(f32x16 a, f32x16 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend unsigned less(f32x16 a, f32x16 b) { return less(a.lo, b.lo) | less(a.hi, b.hi) << 8; }
-};
-
-/// Eight doubles that are calculated together, see simd.hpp.
-struct f64x8 {
-  static constexpr std::size_t width = 8;
-  f64x4 lo, hi;
-
-  static f64x8 load(const double* p) { return {f64x4::load(p), f64x4::load(p + 4)}; }
-  static f64x8 convert(const float* p) { return {f64x4::convert(p), f64x4::convert(p + 4)}; }
-  static f64x8 broadcast(double x) { return {f64x4::broadcast(x), f64x4::broadcast(x)}; }
-  void store(double* p) const {
-    lo.store(p);
-    hi.store(p + 4);
+  using lanes = doubled_lanes;
+  friend lanes operator+(lanes a, lanes b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend lanes operator-(lanes a, lanes b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend lanes operator*(lanes a, lanes b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend lanes operator/(lanes a, lanes b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend lanes min(lanes a, lanes b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend lanes max(lanes a, lanes b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend unsigned less(lanes a, lanes b) {
+    return less(a.lo, b.lo) | less(a.hi, b.hi) << Half::width;
   }
-
-  friend f64x8 operator+(f64x8 a, f64x8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend f64x8 operator-(f64x8 a, f64x8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend f64x8 operator*(f64x8 a, f64x8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend f64x8 operator/(f64x8 a, f64x8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
-  friend f64x8 min(f64x8 a, f64x8 b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend f64x8 max(f64x8 a, f64x8 b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend f64x8 choose(f64x8 a, f64x8 b, f64x8 x, f64x8 y) {
+  friend lanes choose(lanes a, lanes b, lanes x, lanes y) {
     return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
   }
-  friend f64x8 mantissa(f64x8 a) { return {mantissa(a.lo), mantissa(a.hi)}; }
-  friend f64x8 exponent(f64x8 a) { return {exponent(a.lo), exponent(a.hi)}; }
+  friend lanes mantissa(lanes a) { return {mantissa(a.lo), mantissa(a.hi)}; }
+  friend lanes exponent(lanes a) { return {exponent(a.lo), exponent(a.hi)}; }
 };
+
+using f32x16 = doubled_lanes<f32x8, float>;
+using f64x8 = doubled_lanes<f64x4, double>;
 
 #endif
 
@@ -12068,12 +12060,13 @@ class cloud_stream {
   explicit cloud_stream(const std::filesystem::path& path) : out_(path) {}
 
   /// Adds points, in their order. The first piece that is not empty says what every point has
-  /// (normals, colours, label); throws argument_error where a later one has something else.
+  /// (normals, colours, label); throws argument_error where a later one has something else, or
+  /// where the stream is closed: by commit, or by a piece that could not be written.
   void add(const cloud::cloud& piece);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }  ///< points added
 
-  /// Makes it the file; nothing can be added afterwards.
+  /// Makes it the file and closes the stream.
   void commit();
 
  private:
@@ -12082,12 +12075,18 @@ class cloud_stream {
     friend bool operator==(const columns&, const columns&) = default;
   };
 
+  void demand_open() const;
   void begin(const cloud::cloud& piece);
 
   detail::ply_writer out_;
+  bool is_open_ = true;
   std::optional<columns> columns_ = {};
   std::uint64_t size_ = 0;
 };
+
+inline void cloud_stream::demand_open() const {
+  if (!is_open_) throw argument_error("io::cloud_stream: an open stream expected, this is closed");
+}
 
 inline void cloud_stream::begin(const cloud::cloud& piece) {
   out_.element_for_later("vertex");
@@ -12096,26 +12095,29 @@ inline void cloud_stream::begin(const cloud::cloud& piece) {
 }
 
 inline void cloud_stream::add(const cloud::cloud& piece) {
+  demand_open();
   if (piece.empty()) return;
   detail::check_columns(piece, piece.colors);
   const columns found{!piece.normals.empty(), !piece.colors.empty(), !piece.labels.empty()};
-  if (!columns_) {
-    begin(piece);
-    columns_ = found;
-  }
-  if (found != *columns_) {
+  if (columns_ && found != *columns_) {
     throw argument_error(
         "io::cloud_stream: a piece with the normals, colours and labels of the first expected, or "
         "without them where that had none");
   }
+  is_open_ = false;  // until the piece is whole
+  if (!columns_) begin(piece);
+  columns_ = found;
   for (std::size_t i = 0; i < piece.size(); ++i) {
     detail::cloud_row(out_, detail::coordinate::wide, piece, piece.colors, i);
     out_.end_row();
   }
   size_ += piece.size();
+  is_open_ = true;
 }
 
 inline void cloud_stream::commit() {
+  demand_open();
+  is_open_ = false;
   if (!columns_) begin({});
   out_.set_count("vertex", size_);
   out_.commit();
@@ -18375,6 +18377,37 @@ inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
 }  // namespace AIB_ISA
 }  // namespace aib::search
 
+// aib/mesh/finite_triangles.hpp
+
+namespace aib::mesh {
+
+/// The triangles of a mesh whose corners are all finite.
+struct finite_triangles {
+  std::vector<search::corners> corners = {};
+  std::vector<std::uint32_t> index = {};  ///< of each in the mesh
+
+  /// Throws undefined_error, in the name of `function`, if there is none.
+  finite_triangles(const mesh& surface, std::string_view function) {
+    corners.reserve(surface.triangles.size());
+    index.reserve(surface.triangles.size());
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const Eigen::Vector3f& at_a = surface.vertices[a];
+      const Eigen::Vector3f& at_b = surface.vertices[b];
+      const Eigen::Vector3f& at_c = surface.vertices[c];
+      if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
+      corners.emplace_back(at_a, at_b, at_c);
+      index.push_back(static_cast<std::uint32_t>(t));
+    }
+    if (corners.empty()) {
+      throw undefined_error(
+          message(function, ": no finite triangle (", surface.triangles.size(), " triangles)"));
+    }
+  }
+};
+
+}  // namespace aib::mesh
+
 // aib/mesh/distances.hpp
 
 namespace aib::mesh {
@@ -18391,16 +18424,14 @@ class surface_index {
 
   /// Index in the mesh of the triangle at a place of the tree.
   [[nodiscard]] std::size_t triangle_at(std::uint32_t place) const {
-    return kept_[tree_.index(place)];
+    return triangles_.index[tree_.index(place)];
   }
 
  private:
-  std::vector<search::corners> finite_triangles(const mesh& surface);
   static std::vector<Eigen::Vector3f> first_corners(std::span<const search::corners> triangles);
 
   Eigen::Vector3d origin_;
-  std::vector<std::size_t> kept_;
-  std::vector<search::corners> corners_;
+  finite_triangles triangles_;
   search::triangle_tree tree_;
 };
 
@@ -18432,23 +18463,6 @@ closest_points closest(const cloud::cloud& points,
                                         const cloud::cloud& samples,
                                         const cloud::compare_options& options = {});
 
-inline std::vector<search::corners> surface_index::finite_triangles(const mesh& surface) {
-  std::vector<search::corners> finite;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3f corner[] = {surface.vertices[a], surface.vertices[b],
-                                      surface.vertices[c]};
-    if (!std::all_of(corner, corner + 3, cloud::is_finite)) continue;
-    finite.emplace_back(corner[0], corner[1], corner[2]);
-    kept_.push_back(t);
-  }
-  if (finite.empty()) {
-    throw undefined_error(
-        message("mesh::distances: no finite triangle (", surface.triangles.size(), " triangles)"));
-  }
-  return finite;
-}
-
 inline std::vector<Eigen::Vector3f> surface_index::first_corners(
     std::span<const search::corners> triangles) {
   std::vector<Eigen::Vector3f> first;
@@ -18459,8 +18473,11 @@ inline std::vector<Eigen::Vector3f> surface_index::first_corners(
 
 inline surface_index::surface_index(const mesh& surface, unsigned threads, const control& control)
     : origin_(surface.origin),
-      corners_(finite_triangles(surface)),
-      tree_(corners_, search::common_curve(first_corners(corners_), {}), threads, control) {}
+      triangles_(surface, "mesh::distances"),
+      tree_(triangles_.corners,
+            search::common_curve(first_corners(triangles_.corners), {}),
+            threads,
+            control) {}
 
 inline closest_points closest(const cloud::cloud& points,
                               const surface_index& surface,
@@ -19865,23 +19882,21 @@ class ray_surface {
  public:
   /// Throws undefined_error if no triangle is finite.
   explicit ray_surface(const mesh& surface, unsigned threads = 0, const control& control = {})
-      : origin_(surface.origin),
-        label_names_(surface.label_names),
-        tree_(finite_triangles(surface), threads, control) {}
+      : ray_surface(surface, finite_triangles(surface, "mesh::ray_surface"), threads, control) {}
 
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
   [[nodiscard]] const search::ray_tree& tree() const { return tree_; }
-  [[nodiscard]] std::size_t n_triangles() const { return kept_.size(); }
+  [[nodiscard]] std::size_t n_triangles() const { return index_.size(); }
   [[nodiscard]] const std::vector<std::string>& label_names() const { return label_names_; }
   [[nodiscard]] bool has_labels() const { return !labels_.empty(); }
 
   /// Index of the triangle in the mesh.
   [[nodiscard]] std::uint32_t triangle_at(std::uint32_t place) const {
-    return kept_[tree_.index(place)];
+    return index_[tree_.index(place)];
   }
   /// Label of the triangle; 0 where the mesh has none.
   [[nodiscard]] std::uint32_t label_at(std::uint32_t place) const {
-    return labels_.empty() ? 0 : labels_[tree_.index(place)];
+    return labels_.empty() ? 0 : labels_[triangle_at(place)];
   }
   /// Unit normal of the triangle by the order of its corners; 0 where it has no area.
   [[nodiscard]] Eigen::Vector3d normal_at(std::uint32_t place) const {
@@ -19911,34 +19926,23 @@ class ray_surface {
   }
 
  private:
-  std::vector<search::corners> finite_triangles(const mesh& surface);
+  ray_surface(const mesh& surface,
+              finite_triangles triangles,
+              unsigned threads,
+              const control& control)
+      : origin_(surface.origin),
+        label_names_(surface.label_names),
+        index_(std::move(triangles.index)),
+        tree_(triangles.corners, threads, control) {
+    if (surface.labels.size() == surface.triangles.size()) labels_ = surface.labels;
+  }
 
   Eigen::Vector3d origin_;
   std::vector<std::string> label_names_;
-  std::vector<std::uint32_t> kept_, labels_;
+  std::vector<std::uint32_t> index_;   ///< in the mesh
+  std::vector<std::uint32_t> labels_;  ///< of the mesh
   search::ray_tree tree_;
 };
-
-inline std::vector<search::corners> ray_surface::finite_triangles(const mesh& surface) {
-  std::vector<search::corners> finite;
-  finite.reserve(surface.triangles.size());
-  const bool labelled = surface.labels.size() == surface.triangles.size();
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3f& at_a = surface.vertices[a];
-    const Eigen::Vector3f& at_b = surface.vertices[b];
-    const Eigen::Vector3f& at_c = surface.vertices[c];
-    if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
-    finite.emplace_back(at_a, at_b, at_c);
-    kept_.push_back(static_cast<std::uint32_t>(t));
-    if (labelled) labels_.push_back(surface.labels[t]);
-  }
-  if (finite.empty()) {
-    throw undefined_error(message("mesh::ray_surface: no finite triangle (",
-                                  surface.triangles.size(), " triangles)"));
-  }
-  return finite;
-}
 
 }  // namespace AIB_ISA
 }  // namespace aib::mesh

@@ -9,6 +9,7 @@
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
+#include <aib/mesh/finite_triangles.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/search/curve.hpp>
 #include <aib/search/triangle_tree.hpp>
@@ -38,16 +39,14 @@ class surface_index {
 
   /// Index in the mesh of the triangle at a place of the tree.
   [[nodiscard]] std::size_t triangle_at(std::uint32_t place) const {
-    return kept_[tree_.index(place)];
+    return triangles_.index[tree_.index(place)];
   }
 
  private:
-  std::vector<search::corners> finite_triangles(const mesh& surface);
   static std::vector<Eigen::Vector3f> first_corners(std::span<const search::corners> triangles);
 
   Eigen::Vector3d origin_;
-  std::vector<std::size_t> kept_;
-  std::vector<search::corners> corners_;
+  finite_triangles triangles_;
   search::triangle_tree tree_;
 };
 
@@ -79,23 +78,6 @@ closest_points closest(const cloud::cloud& points,
                                         const cloud::cloud& samples,
                                         const cloud::compare_options& options = {});
 
-inline std::vector<search::corners> surface_index::finite_triangles(const mesh& surface) {
-  std::vector<search::corners> finite;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3f corner[] = {surface.vertices[a], surface.vertices[b],
-                                      surface.vertices[c]};
-    if (!std::all_of(corner, corner + 3, cloud::is_finite)) continue;
-    finite.emplace_back(corner[0], corner[1], corner[2]);
-    kept_.push_back(t);
-  }
-  if (finite.empty()) {
-    throw undefined_error(
-        message("mesh::distances: no finite triangle (", surface.triangles.size(), " triangles)"));
-  }
-  return finite;
-}
-
 inline std::vector<Eigen::Vector3f> surface_index::first_corners(
     std::span<const search::corners> triangles) {
   std::vector<Eigen::Vector3f> first;
@@ -106,8 +88,11 @@ inline std::vector<Eigen::Vector3f> surface_index::first_corners(
 
 inline surface_index::surface_index(const mesh& surface, unsigned threads, const control& control)
     : origin_(surface.origin),
-      corners_(finite_triangles(surface)),
-      tree_(corners_, search::common_curve(first_corners(corners_), {}), threads, control) {}
+      triangles_(surface, "mesh::distances"),
+      tree_(triangles_.corners,
+            search::common_curve(first_corners(triangles_.corners), {}),
+            threads,
+            control) {}
 
 inline closest_points closest(const cloud::cloud& points,
                               const surface_index& surface,

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
+#include <aib/mesh/finite_triangles.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/search/ray_one.hpp>
 #include <aib/search/ray_tree.hpp>
@@ -12,13 +12,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aib::mesh {
@@ -30,23 +29,21 @@ class ray_surface {
  public:
   /// Throws undefined_error if no triangle is finite.
   explicit ray_surface(const mesh& surface, unsigned threads = 0, const control& control = {})
-      : origin_(surface.origin),
-        label_names_(surface.label_names),
-        tree_(finite_triangles(surface), threads, control) {}
+      : ray_surface(surface, finite_triangles(surface, "mesh::ray_surface"), threads, control) {}
 
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
   [[nodiscard]] const search::ray_tree& tree() const { return tree_; }
-  [[nodiscard]] std::size_t n_triangles() const { return kept_.size(); }
+  [[nodiscard]] std::size_t n_triangles() const { return index_.size(); }
   [[nodiscard]] const std::vector<std::string>& label_names() const { return label_names_; }
   [[nodiscard]] bool has_labels() const { return !labels_.empty(); }
 
   /// Index of the triangle in the mesh.
   [[nodiscard]] std::uint32_t triangle_at(std::uint32_t place) const {
-    return kept_[tree_.index(place)];
+    return index_[tree_.index(place)];
   }
   /// Label of the triangle; 0 where the mesh has none.
   [[nodiscard]] std::uint32_t label_at(std::uint32_t place) const {
-    return labels_.empty() ? 0 : labels_[tree_.index(place)];
+    return labels_.empty() ? 0 : labels_[triangle_at(place)];
   }
   /// Unit normal of the triangle by the order of its corners; 0 where it has no area.
   [[nodiscard]] Eigen::Vector3d normal_at(std::uint32_t place) const {
@@ -76,34 +73,23 @@ class ray_surface {
   }
 
  private:
-  std::vector<search::corners> finite_triangles(const mesh& surface);
+  ray_surface(const mesh& surface,
+              finite_triangles triangles,
+              unsigned threads,
+              const control& control)
+      : origin_(surface.origin),
+        label_names_(surface.label_names),
+        index_(std::move(triangles.index)),
+        tree_(triangles.corners, threads, control) {
+    if (surface.labels.size() == surface.triangles.size()) labels_ = surface.labels;
+  }
 
   Eigen::Vector3d origin_;
   std::vector<std::string> label_names_;
-  std::vector<std::uint32_t> kept_, labels_;
+  std::vector<std::uint32_t> index_;   ///< in the mesh
+  std::vector<std::uint32_t> labels_;  ///< of the mesh
   search::ray_tree tree_;
 };
-
-inline std::vector<search::corners> ray_surface::finite_triangles(const mesh& surface) {
-  std::vector<search::corners> finite;
-  finite.reserve(surface.triangles.size());
-  const bool labelled = surface.labels.size() == surface.triangles.size();
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Eigen::Vector3f& at_a = surface.vertices[a];
-    const Eigen::Vector3f& at_b = surface.vertices[b];
-    const Eigen::Vector3f& at_c = surface.vertices[c];
-    if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
-    finite.emplace_back(at_a, at_b, at_c);
-    kept_.push_back(static_cast<std::uint32_t>(t));
-    if (labelled) labels_.push_back(surface.labels[t]);
-  }
-  if (finite.empty()) {
-    throw undefined_error(message("mesh::ray_surface: no finite triangle (",
-                                  surface.triangles.size(), " triangles)"));
-  }
-  return finite;
-}
 
 }  // namespace AIB_ISA
 }  // namespace aib::mesh
