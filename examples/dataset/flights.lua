@@ -46,23 +46,25 @@ end
 
 local crane = { name = "crane" }
 
---- Up and down the mast between the directions of the jibs, then along both sides of the jib.
+--- Up and down the mast from some of eight directions, none of them that of a jib.
+local function mast_of(asset, n_views, options)
+  options.views, options.radius = {}, asset.high[1]
+  for k = 1, n_views do options.views[k] = towards(22.5 + 45 * (k - 1)) end
+  return aib.survey.linear(options)
+end
+
+--- All round the mast, then along both sides of the jib.
 function crane.paper(asset, camera, scene)
-  local views = {}
-  for k = 0, 7 do views[k + 1] = towards(22.5 + 45 * k) end
-  local top = asset.high[3]
-  local mast = aib.survey.linear { camera = camera, from = { 0, 0, 1 }, to = { 0, 0, top - 1 }, views = views,
-    radius = asset.high[1], stand_off = 6 }
+  local mast = mast_of(asset, 8, { camera = camera, from = { 0, 0, 1 }, to = { 0, 0, asset.high[3] - 1 },
+    stand_off = 6 })
   local jib = aib.survey.linear { camera = camera, from = scene.jib.to, to = scene.jib.from, radius = 0.6,
     stand_off = 6, views = { { 0, 1, -0.4 }, { 0, -1, -0.4 } } }
   return aib.survey.join { mast, jib }, { frames = 642, min_distance = 1.5 }
 end
 
 function crane.small(asset, camera)
-  local views = {}
-  for k = 0, 3 do views[k + 1] = towards(22.5 + 45 * k) end
-  local mast = aib.survey.linear { camera = camera, from = { 0, 0, 3 }, to = { 0, 0, asset.high[3] }, views = views,
-    radius = asset.high[1], stand_off = 9, pitch = 10 }
+  local mast = mast_of(asset, 4, { camera = camera, from = { 0, 0, 3 }, to = { 0, 0, asset.high[3] }, stand_off = 9,
+    pitch = 10 })
   return mast, { frames = 200, min_distance = 1.5 }
 end
 

@@ -6,6 +6,7 @@
 /// Flights: planned, measured, and what goes wrong with them.
 
 #include <aib/survey/facade.hpp>
+#include <aib/survey/facing.hpp>
 #include <aib/survey/flight_path.hpp>
 #include <aib/survey/fly.hpp>
 #include <aib/survey/footprint.hpp>
@@ -13,5 +14,6 @@
 #include <aib/survey/linear.hpp>
 #include <aib/survey/measure.hpp>
 #include <aib/survey/orbit.hpp>
+#include <aib/survey/outline.hpp>
 #include <aib/survey/perturb.hpp>
 #include <aib/survey/sensor_noise.hpp>

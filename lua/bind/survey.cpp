@@ -157,6 +157,7 @@ std::function<std::string(std::size_t)> name_option(options& o) {
 survey::fly_options fly_options(options& o) {
   using survey::aim_rule;
   using survey::clearance_rule;
+  using survey::gimbal_rule;
   survey::fly_options f;
   f.frames = o.get<std::size_t>("frames");
   if (f.frames && o.has("overlap")) o.reject("frames", "overlap is given: one of the two expected");
@@ -167,8 +168,14 @@ survey::fly_options fly_options(options& o) {
   f.aim = o.choice("aim", f.aim, {{"path", aim_rule::path}, {"normal", aim_rule::normal}});
   f.speed = o.number("speed", f.speed);
   f.gimbal_rate = angle_option(o, "gimbal_rate", 60);
+  f.gimbal = o.choice("gimbal", f.gimbal, {{"slow", gimbal_rule::slow}, {"lag", gimbal_rule::lag}});
   f.name = name_option(o);
   return f;
+}
+
+std::vector<double> in_degrees(std::vector<double> angles) {
+  for (double& angle : angles) angle = math::degrees(angle);
+  return angles;
 }
 
 record as_record(lua_State* state, survey::flight_plan plan) {
@@ -180,6 +187,9 @@ record as_record(lua_State* state, survey::flight_plan plan) {
   r.set("overlap_across", plan.overlap_across).set("duration", plan.duration_s);
   r.set("gsd_mm", 1000 * plan.gsd).set("n_pushed", plan.n_pushed);
   r.set("largest_push", plan.largest_push).set("n_gimbal_limited", plan.n_gimbal_limited);
+  const auto lags = in_degrees(std::move(plan.view_lag));
+  r.set("gimbal_delay", plan.gimbal_delay_s).set("view_lags", lags);
+  r.set("largest_view_lag", *std::max_element(lags.begin(), lags.end()));
   if (plan.min_distance) {
     r.set("min_distance", *plan.min_distance);
     r.set("min_distance_frame", plan.trajectory.names[plan.min_distance_frame]);
@@ -230,6 +240,9 @@ record as_record(lua_State* state, const survey::flight_report& report) {
   overlap.set("n_pairs", report.overlap.size()).set("n_blind", n_blind);
   r.set("overlap", overlap).set("overlaps", report.overlap);
   r.set("gsd_mm", spread_record(state, gsd_mm, {0.05, 0.5, 0.95, 1}));
+  const auto off_normals = in_degrees(report.off_normal);
+  r.set("off_normal", spread_record(state, off_normals, {0.5, 0.95, 1}));
+  r.set("off_normals", off_normals);
   r.set("hit_share", static_cast<double>(report.gsd.size()) / static_cast<double>(report.n_rays));
   sol::table coverage(state, sol::create), incidence(state, sol::create);
   for (const std::uint32_t n : {1u, 2u, 3u, 5u, 10u}) coverage[n] = report.seen_by(n);
@@ -286,6 +299,7 @@ survey::sensor_noise_options noise_options(options& o, const session& s) {
   n.transfer =
       o.choice("transfer", n.transfer, {{"srgb", transfer::srgb}, {"linear", transfer::linear}});
   n.threads = s.threads;
+  n.control = s.control;
   o.done();
   return n;
 }

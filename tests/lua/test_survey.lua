@@ -47,6 +47,30 @@ return aib.test {
     t:near(report.area, 400, 1e-9)
     t:near(report.unseen_area, 400 * (1 - report.coverage[1]), 1e-9)
     t:equal(report.hit_share, 1.0)
+    t:equal(#report.off_normals, plan.n_frames)
+    t:near(report.off_normal.max, 0, 1e-9)
+  end,
+
+  ["a view that turns too fast for the gimbal waits for it, or lags behind"] = function(t)
+    local path = aib.survey.along { camera = camera, stand_off = 5, points = { { 0, 0, 0 }, { 2, 0, 0 } },
+      views = { { 0, 1, 0 }, { 1, 0, 0 } } }
+    local slow = aib.survey.fly(path, { frames = 10, gimbal_rate = 30 })
+    t:equal({ slow.n_gimbal_limited, slow.largest_view_lag }, { 9, 0.0 })
+    t:near(slow.duration, 3, 1e-6)
+    t:near(slow.gimbal_delay, 2, 1e-6)
+    local lag = aib.survey.fly(path, { frames = 10, gimbal_rate = 30, gimbal = "lag" })
+    t:near(lag.duration, 1, 1e-6)
+    t:near(lag.view_lags[10], 60, 1e-6)
+  end,
+
+  ["a footprint may turn inwards, but not cross itself"] = function(t)
+    local l_shape = { { 0, 0 }, { 20, 0 }, { 20, 10 }, { 10, 10 }, { 10, 20 }, { 0, 20 } }
+    local path = aib.survey.facade { camera = camera, footprint = l_shape, low = 0, high = 1, stand_off = 3 }
+    t:near(path.length, 80 - 6 + 5 * 3 * math.pi / 2, 1e-9)
+    l_shape[2], l_shape[4] = l_shape[4], l_shape[2]
+    t:raises("meets another one", function()
+      aib.survey.facade { camera = camera, footprint = l_shape, low = 0, high = 1, stand_off = 3 }
+    end)
   end,
 
   ["a frame of a wall is its distance, normal and label"] = function(t)

@@ -59,6 +59,34 @@ double angle_between(const math::rigid3& a, const math::rigid3& b) {
   return math::rotation_angle(a.rotation * b.rotation.transpose());
 }
 
+/// The walls of a prism, both sides of which count.
+mesh::mesh walls_of(const std::vector<Eigen::Vector2d>& corners, double height) {
+  mesh::mesh m;
+  const auto n = static_cast<std::uint32_t>(corners.size());
+  for (const Eigen::Vector2d& c : corners) {
+    m.vertices.push_back(Eigen::Vector3d(c.x(), c.y(), 0).cast<float>());
+    m.vertices.push_back(Eigen::Vector3d(c.x(), c.y(), height).cast<float>());
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
+    m.triangles.push_back({a, b, b + 1});
+    m.triangles.push_back({a, b + 1, a + 1});
+  }
+  return m;
+}
+
+double distance_to(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector3d& p) {
+  return survey::detail::distance_to_edges(p.head<2>(), corners);
+}
+
+const std::vector<Eigen::Vector2d> l_shape{{0, 0}, {20, 0}, {20, 10}, {10, 10}, {10, 20}, {0, 20}};
+
+/// A court of a width, open to the right.
+std::vector<Eigen::Vector2d> u_shape(double width) {
+  return {{0, 0},         {20, 0},         {20, 5},          {6, 5},
+          {6, 5 + width}, {20, 5 + width}, {20, 10 + width}, {0, 10 + width}};
+}
+
 const mesh::mesh office = box({-15, -10, 0}, {15, 10, 15});
 
 survey::flight_path office_path(double stand_off) {
@@ -83,9 +111,13 @@ TEST_CASE("a footprint is the convex hull, anticlockwise") {
   CHECK(plan.high == 15);
   CHECK_THROWS_AS(static_cast<void>(survey::footprint_of(office, {7})), undefined_error);
   CHECK(survey::anticlockwise({{0, 0}, {0, 1}, {1, 0}}).front() == Eigen::Vector2d(1, 0));
+  CHECK_THROWS_AS(static_cast<void>(survey::anticlockwise({{0, 0}, {4, 4}, {4, 0}, {0, 3}})),
+                  argument_error);  // crosses itself
   CHECK_THROWS_AS(
-      static_cast<void>(survey::anticlockwise({{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}})),
-      argument_error);
+      static_cast<void>(survey::anticlockwise({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}})),
+      argument_error);  // touches itself
+  CHECK_THROWS_AS(static_cast<void>(survey::anticlockwise({{0, 0}, {4, 0}, {4, 4}, {0, 0}})),
+                  argument_error);  // an edge without a length
   CHECK_THROWS_AS(static_cast<void>(survey::labels_of({"glass"}, {"glas"})), argument_error);
 }
 
@@ -123,6 +155,66 @@ TEST_CASE("rows lie on the offset of the footprint and look at it at right angle
     CHECK(pose.rotation(2, 0) == doctest::Approx(0));  // the horizon is level
     CHECK(pose.rotation(2, 1) < 0);                    // up is up
   }
+}
+
+TEST_CASE("rows keep the stand-off from walls that turn inwards, and see all of them") {
+  const double stand_off = 3, height = 1.5;
+  for (const auto& corners : {l_shape, u_shape(9), u_shape(6.5)}) {
+    const mesh::mesh walls = walls_of(corners, height);
+    const mesh::surface_index distance(walls);
+    const mesh::ray_surface sight(walls);
+    const survey::flight_space space{distance, sight};
+    const auto path = survey::facade({corners, 0, height}, {.path = {.stand_off = stand_off}});
+    const double n = std::ceil(path.length() / 0.1);
+    for (double i = 0; i < n; ++i) {
+      const auto a = path.at(i / n), b = path.at((i + 1) / n);
+      REQUIRE(distance_to(corners, a.translation) > stand_off - 1e-6);
+      REQUIRE((b.translation - a.translation).norm() < 1.01 * path.length() / n);
+      REQUIRE(angle_between(a, b) < 0.5);
+      REQUIRE(std::abs(a.rotation(2, 0)) < 1e-9);  // the horizon is level
+    }
+    const auto plan = survey::fly(
+        path, {.min_distance = 0.99 * stand_off, .clearance = survey::clearance_rule::refuse},
+        &space);
+    const auto report = survey::measure(views_of(plan), walls, sight, {.samples = 1000});
+    CHECK(report.seen_by(1) == 1);
+    CHECK(report.seen_within(math::radians(46)) == 1);  // in an inner corner 45 degrees
+    std::vector<double> overlap;                        // where the camera turns into a corner
+    for (std::size_t i = 0; i + 1 < plan.trajectory.size(); ++i) {
+      const auto& a = plan.trajectory.world_from_camera[i];
+      const auto& b = plan.trajectory.world_from_camera[i + 1];
+      const Eigen::Vector3d next = a.rotation.transpose() * b.rotation.col(2);
+      const Eigen::Vector3d way = a.rotation.transpose() * (b.translation - a.translation);
+      if (next.x() * way.x() > 1e-9) overlap.push_back(report.overlap[i]);
+    }
+    std::sort(overlap.begin(), overlap.end());
+    CHECK(overlap.size() > 8);
+    CHECK(overlap[overlap.size() / 2] > plan.overlap - 0.03);
+    CHECK(overlap.front() > plan.overlap - 0.1);
+  }
+}
+
+TEST_CASE("an opening that is too narrow to fly into is passed by") {
+  const auto corners = u_shape(4);
+  const auto path = survey::facade({corners, 0, 1}, {.path = {.stand_off = 3}});
+  double deepest = HUGE_VAL;  // before the middle of the opening
+  for (double i = 0; i <= 20000; ++i) {
+    const Eigen::Vector3d p = path.at(i / 20000).translation;
+    REQUIRE(distance_to(corners, p) > 3 - 1e-6);
+    if (p.x() > 0 && std::abs(p.y() - 7) < 0.01) deepest = std::min(deepest, p.x());
+  }
+  CHECK(std::abs(deepest - (20 + std::sqrt(9.0 - 4.0))) < 0.01);
+  const survey::facade_options inner{.path = {.stand_off = 3}, .sides = {{3, 3}}};
+  CHECK_THROWS_AS(static_cast<void>(survey::facade({corners, 0, 1}, inner)), argument_error);
+}
+
+TEST_CASE("some sides of a footprint are flown from the first to the last of them") {
+  const auto path =
+      survey::facade({l_shape, 0, 0.5}, {.path = {.stand_off = 2}, .sides = {{2, 3}}});
+  CHECK((path.at(0).translation.head<2>() - Eigen::Vector2d(20, 12)).norm() < 1e-9);
+  CHECK((path.at(1).translation.head<2>() - Eigen::Vector2d(12, 20)).norm() < 1e-9);
+  CHECK(path.length() == doctest::Approx(16));
+  CHECK(path.n_rows == 1);
 }
 
 TEST_CASE("a pitch looks down at the same rows from higher up") {
@@ -271,15 +363,63 @@ TEST_CASE("the camera aims along the normal, no faster than the gimbal turns") {
       survey::along({{-20, -9, 8}, {0, -9, 8}, {0.1, -9, 8}, {20, -9, 8}},
                     {{0, 1, 0}, {0, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {.stand_off = 9});
   const double rate = 0.2;
-  const auto slow = survey::fly(turning, {.frames = 200, .speed = 2, .gimbal_rate = rate});
-  CHECK(slow.n_gimbal_limited > 5);
-  const auto& t = slow.trajectory;
-  for (std::size_t i = 1; i < t.size(); ++i) {
-    const double time = t.stamps_s[i] - t.stamps_s[i - 1];
-    CHECK(angle_between(t.world_from_camera[i - 1], t.world_from_camera[i]) <= rate * time + 1e-6);
+  using survey::gimbal_rule;
+  const auto fly = [&](gimbal_rule gimbal) {
+    return survey::fly(turning, {.frames = 200, .speed = 2, .gimbal_rate = rate, .gimbal = gimbal});
+  };
+  const auto slow = fly(gimbal_rule::slow), lagging = fly(gimbal_rule::lag);
+  for (const auto& plan_of_rule : {slow, lagging}) {
+    const auto& t = plan_of_rule.trajectory;
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      const double time = t.stamps_s[i] - t.stamps_s[i - 1];
+      CHECK(angle_between(t.world_from_camera[i - 1], t.world_from_camera[i]) <=
+            rate * time + 1e-6);
+    }
+    CHECK(angle_between(t.world_from_camera.back(), turning.at(1)) < 1e-6);
+    CHECK(plan_of_rule.n_gimbal_limited > 5);
+    CHECK(plan_of_rule.view_lag.size() == t.size());
   }
-  CHECK(angle_between(t.world_from_camera.back(), turning.at(1)) < 1e-6);
-  CHECK(slow.duration_s == doctest::Approx(20));
+  // 45 degrees in 0.1 m, which would take 0.05 s.
+  const double delay = std::numbers::pi / 4 / rate - 0.05;
+  CHECK(slow.gimbal_delay_s == doctest::Approx(delay).epsilon(0.05));
+  CHECK(slow.duration_s == doctest::Approx(20 + delay).epsilon(0.01));
+  CHECK(*std::max_element(slow.view_lag.begin(), slow.view_lag.end()) == 0);
+  CHECK(lagging.gimbal_delay_s == 0);
+  CHECK(lagging.duration_s == doctest::Approx(20));
+  CHECK(*std::max_element(lagging.view_lag.begin(), lagging.view_lag.end()) > 0.6);
+  for (std::size_t i = 0; i < slow.trajectory.size(); ++i) {
+    CHECK(angle_between(slow.trajectory.world_from_camera[i],
+                        lagging.trajectory.world_from_camera[i]) ==
+          doctest::Approx(lagging.view_lag[i]));
+  }
+}
+
+TEST_CASE("frames are nearer to each other where the camera turns into its way") {
+  // A turn that adds to the way moves the image as much again; at its edge, which is 0.36 of the
+  // distance aside, by so much of the square more.
+  const double turn = 0.3, length = turn * 5;
+  const auto turning =
+      survey::along({{0, 0, 0}, {length, 0, 0}}, {{0, 1, 0}, {std::sin(turn), std::cos(turn), 0}},
+                    {.stand_off = 5});
+  const auto straight =
+      survey::along({{0, 0, 0}, {length, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {.stand_off = 5});
+  const double n = static_cast<double>(survey::fly(straight, {.overlap = 0.99}).trajectory.size());
+  const auto n_turning = survey::fly(turning, {.overlap = 0.99}).trajectory.size();
+  CHECK(static_cast<double>(n_turning) / n == doctest::Approx(2 + 0.36 * 0.36).epsilon(0.02));
+}
+
+TEST_CASE("a report tells how far views are from facing the surface") {
+  const mesh::mesh wall = box({-20, 0, 0}, {20, 1, 6});
+  const mesh::ray_surface surface(wall);
+  const math::camera camera = survey::camera_of({});
+  std::vector<math::view> views;
+  for (const double angle : {0.0, 0.2, 3.1})
+    views.push_back({camera, {survey::looking({std::sin(angle), std::cos(angle), 0}), {0, -5, 3}}});
+  const auto report = survey::measure(views, wall, surface, {.samples = 10});
+  REQUIRE(report.off_normal.size() == 3);
+  CHECK(report.off_normal[0] == doctest::Approx(0));
+  CHECK(report.off_normal[1] == doctest::Approx(0.2));
+  CHECK(std::isnan(report.off_normal[2]));
 }
 
 }  // namespace test_flight

@@ -52,6 +52,18 @@ struct leg {
   [[nodiscard]] double length() const {
     return std::hypot(angle * (arm - axis.dot(arm) * axis).norm(), shift.norm());
   }
+  /// The part between two shares.
+  [[nodiscard]] leg part(double from, double to) const {
+    const double share = to - from;
+    const Eigen::Vector3d swing = from * angle * axis;
+    return {centre + from * shift,
+            math::rotation_from(swing) * arm,
+            axis,
+            share * angle,
+            share * shift,
+            at(from).rotation,
+            share * turn};
+  }
   [[nodiscard]] leg reversed() const {
     const math::rigid3 end = at(1);
     const Eigen::Vector3d swing = angle * axis;

@@ -8,6 +8,7 @@
 #include <aib/mesh/distances.hpp>
 #include <aib/mesh/ray_surface.hpp>
 #include <aib/pose/trajectory.hpp>
+#include <aib/survey/facing.hpp>
 #include <aib/survey/flight_path.hpp>
 #include <aib/survey/lens.hpp>
 
@@ -38,6 +39,12 @@ enum class aim_rule {
   normal,  ///< along the normal of the surface that it would see, where it sees one
 };
 
+/// What happens where the view would turn faster than the gimbal can.
+enum class gimbal_rule {
+  slow,  ///< the flight slows down there, so that every frame looks as planned
+  lag,   ///< the flight keeps its speed, the view lags behind
+};
+
 /// What a flight keeps away from and looks at.
 struct flight_space {
   const mesh::surface_index& distance;  ///< for the distance
@@ -52,6 +59,7 @@ struct fly_options {
   aim_rule aim = aim_rule::path;
   double speed = 2;                                    ///< m/s, gives the stamps
   double gimbal_rate = 60 / math::degrees_per_radian;  ///< radians/s: largest turn of the view
+  gimbal_rule gimbal = gimbal_rule::slow;
   /// Name of the image of a frame, counted from 0.
   std::function<std::string(std::size_t)> name = [](std::size_t i) {
     const std::string digits = std::to_string(i);
@@ -72,12 +80,14 @@ struct flight_plan {
   double largest_push = 0;
   std::optional<double> min_distance = {};  ///< of frames and of the way between, to the mesh
   std::size_t min_distance_frame = 0;       ///< at or behind which that is
-  std::size_t n_gimbal_limited = 0;         ///< frames whose view lags behind
+  std::size_t n_gimbal_limited = 0;         ///< frames on whose way the gimbal is the limit
+  double gimbal_delay_s = 0;                ///< what slowing down for it takes
+  std::vector<double> view_lag = {};        ///< radians, of each frame: from the view as planned
 };
 
 namespace detail {
 
-/// A path measured in frames: how many frame widths, or heights, the image moves.
+/// A path measured in frames: how many frame widths, or heights, the image of a wall moves.
 class frame_scale {
  public:
   explicit frame_scale(const flight_path& path) : path_(path) {
@@ -112,17 +122,25 @@ class frame_scale {
     double begin;
   };
 
-  static double moved(const leg& l, std::size_t i, const wall_frame& frame) {
+  double moved(const leg& l, std::size_t i, const wall_frame& frame) const {
     const auto share = [](double k) { return k / n_parts; };
     const auto k = static_cast<double>(i);
-    const Eigen::Matrix3d axes = l.at(share(k + 0.5)).rotation;
+    const Eigen::Matrix3d camera_from_world = l.at(share(k + 0.5)).rotation.transpose();
     const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
     const double straight = way.norm();
     // A chord is shorter than its arc.
     const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
-    const double right = std::abs(axes.col(0).dot(way)), down = std::abs(axes.col(1).dot(way));
-    const double ahead = std::abs(axes.col(2).dot(way));
-    return arc * ((right + ahead) / frame.width + down / frame.height);
+    const Eigen::Vector3d by = arc * (camera_from_world * way);
+    // What a turn moves out of an image leaves at its edge, where it moves fastest.
+    const double far = path_.stand_off;
+    const double at_side = far + std::pow(frame.width / 2, 2) / far;
+    const double at_top = far + std::pow(frame.height / 2, 2) / far;
+    const Eigen::Vector3d turn = camera_from_world * l.turn / n_parts;
+    // A turn into the way moves the image more. One against it, as round a corner, less; but then
+    // another side comes into sight: the way counts.
+    const double right = std::abs(by.x()) + std::abs(by.z()), down = std::abs(by.y());
+    return std::max(right, std::abs(by.x() + at_side * turn.y())) / frame.width +
+           std::max(down, std::abs(by.y() - at_top * turn.x())) / frame.height;
   }
 
   const flight_path& path_;
@@ -162,29 +180,6 @@ class clearance {
   const mesh::surface_index& surface_;
   double least_;
 };
-
-/// The direction against the mean normal of the surface in the middle half of an image.
-inline std::optional<Eigen::Vector3d> view_of_surface(const math::rigid3& pose,
-                                                      const math::camera& camera,
-                                                      double stand_off,
-                                                      const mesh::ray_surface& surface) {
-  const wall_frame frame = frame_on_wall(camera, 1);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const double x : {-0.25, 0.0, 0.25}) {
-    for (const double y : {-0.25, 0.0, 0.25}) {
-      const Eigen::Vector3d ray =
-          pose.rotation * Eigen::Vector3d(x * frame.width, y * frame.height, 1).normalized();
-      const auto hit = surface.first_hit(pose.translation, ray, 3 * stand_off);
-      if (!hit) continue;
-      const Eigen::Vector3d normal = surface.normal_at(hit->place);
-      sum += normal.dot(ray) > 0 ? normal : Eigen::Vector3d(-normal);
-    }
-  }
-  const Eigen::Vector3d ahead = pose.rotation.col(2);
-  // A view that would turn by more than 60 degrees belongs to something beside the asset.
-  if (!(sum.norm() > 1e-6) || sum.normalized().dot(ahead) < 0.5) return std::nullopt;
-  return sum.normalized();
-}
 
 /// `to`, or on the way to it as far as an angle from `from`.
 inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
@@ -264,32 +259,42 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
 
 inline void aim(flight_plan& plan, const flight_path& path, const flight_space& space) {
   for (math::rigid3& pose : plan.trajectory.world_from_camera) {
-    const auto view = view_of_surface(pose, path.camera, path.stand_off, space.sight);
-    if (view) pose.rotation = looking(*view, -pose.rotation.col(1));
+    const auto view = facing_direction(pose, path.camera, space.sight, 3 * path.stand_off);
+    // A view that would turn by more than 60 degrees belongs to something beside the asset.
+    if (view && view->dot(pose.rotation.col(2)) >= 0.5)
+      pose.rotation = looking(*view, -pose.rotation.col(1));
   }
 }
 
-inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) {
+/// Stamps, and views that turn no faster than the gimbal.
+inline void follow(flight_plan& plan, const fly_options& options) {
   auto& poses = plan.trajectory.world_from_camera;
-  double stamp = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0) {
-      const double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
-      const Eigen::Matrix3d reached = turned_at_most(poses[i - 1].rotation, poses[i].rotation,
-                                                     options.gimbal_rate * time + 1e-9);
-      if (reached != poses[i].rotation) ++plan.n_gimbal_limited;
-      poses[i].rotation = reached;
-      stamp += time;
+  plan.view_lag.assign(poses.size(), 0);
+  plan.trajectory.stamps_s.assign(poses.size(), 0);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Matrix3d from = poses[i - 1].rotation, wanted = poses[i].rotation;
+    double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
+    const double needed = math::rotation_angle(wanted * from.transpose()) / options.gimbal_rate;
+    if (needed > time + 1e-9) {
+      ++plan.n_gimbal_limited;
+      if (options.gimbal == gimbal_rule::slow) {
+        plan.gimbal_delay_s += needed - time;
+        time = needed;
+      } else {
+        poses[i].rotation = turned_at_most(from, wanted, options.gimbal_rate * time);
+        plan.view_lag[i] = math::rotation_angle(wanted * poses[i].rotation.transpose());
+      }
     }
-    plan.trajectory.stamps_s.push_back(stamp);
+    plan.trajectory.stamps_s[i] = plan.trajectory.stamps_s[i - 1] + time;
   }
-  plan.duration_s = stamp;
+  plan.duration_s = plan.trajectory.stamps_s.back();
 }
 
 }  // namespace detail
 
 /// Places frames on a path, evenly by what the image moves: exactly `frames`, or as few as keep the
-/// overlap. The views of the frames turn no faster than the gimbal.
+/// overlap. The views of the frames turn no faster than the gimbal: where they would, the flight
+/// takes longer, or they lag behind and the plan says by how much.
 ///
 /// space   needed for min_distance and for aim_rule::normal
 ///
@@ -308,7 +313,7 @@ inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) 
   detail::place_frames(plan, path, options);
   if (options.min_distance > 0) detail::keep_away(plan, options, *space);
   if (options.aim == aim_rule::normal) detail::aim(plan, path, *space);
-  detail::set_stamps_and_turns(plan, options);
+  detail::follow(plan, options);
   return plan;
 }
 

@@ -18,7 +18,7 @@
 
 namespace aib::survey {
 
-/// The ground plan of a building: a convex polygon, anticlockwise from above, and its heights.
+/// The ground plan of a building: a simple polygon, anticlockwise from above, and its heights.
 struct footprint {
   std::vector<Eigen::Vector2d> corners;
   double low = 0, high = 0;
@@ -96,23 +96,37 @@ struct footprint {
   return f;
 }
 
+/// Whether the lines from a to b and from c to d have a point in common.
+[[nodiscard]] inline bool do_meet(const Eigen::Vector2d& a,
+                                  const Eigen::Vector2d& b,
+                                  const Eigen::Vector2d& c,
+                                  const Eigen::Vector2d& d) {
+  const Eigen::Array2d low = a.cwiseMin(b), high = a.cwiseMax(b);
+  if ((c.cwiseMin(d).array() > high).any() || (c.cwiseMax(d).array() < low).any()) return false;
+  return turn_of(a, b, c) * turn_of(a, b, d) <= 0 && turn_of(c, d, a) * turn_of(c, d, b) <= 0;
+}
+
 /// The corners anticlockwise. Throws argument_error unless they are three or more that make a
-/// convex polygon.
+/// simple polygon: no edge without a length, none that crosses or touches another.
 [[nodiscard]] inline std::vector<Eigen::Vector2d> anticlockwise(
     std::vector<Eigen::Vector2d> corners) {
   const std::size_t n = corners.size();
   double area = 0;
-  for (std::size_t i = 0; i < n; ++i) area += turn_of({0, 0}, corners[i], corners[(i + 1) % n]);
+  for (std::size_t i = 1; i + 1 < n; ++i) area += turn_of(corners[0], corners[i], corners[i + 1]);
   if (n < 3 || !(std::abs(area) > 0) || !std::isfinite(area))
     throw argument_error("survey: a footprint of three corners or more and an area expected");
-  if (area < 0) std::reverse(corners.begin(), corners.end());
   for (std::size_t i = 0; i < n; ++i) {
-    if (turn_of(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) < 0) {
-      throw argument_error(message("survey: the footprint turns inwards at (",
-                                   corners[(i + 1) % n].x(), ", ", corners[(i + 1) % n].y(),
-                                   "): a convex one expected, or a path of your own"));
-    }
+    const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
+    const auto refuse = [&](const char* what) {
+      throw argument_error(message("survey: the footprint's edge from corner ", i + 1, " (", a.x(),
+                                   ", ", a.y(), ") ", what));
+    };
+    if (a == b) refuse("has no length");
+    if (turn_of(a, b, c) == 0 && (b - a).dot(c - b) < 0) refuse("goes back on the next one");
+    for (std::size_t k = i + 2; k < n - (i == 0 ? 1 : 0); ++k)
+      if (do_meet(a, b, corners[k], corners[(k + 1) % n])) refuse("meets another one");
   }
+  if (area < 0) std::reverse(corners.begin(), corners.end());
   return corners;
 }
 

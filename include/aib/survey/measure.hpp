@@ -13,6 +13,7 @@
 #include <aib/mesh/mesh.hpp>
 #include <aib/mesh/ray_surface.hpp>
 #include <aib/mesh/surface.hpp>
+#include <aib/survey/facing.hpp>
 #include <aib/survey/footprint.hpp>
 
 #include <Eigen/Core>
@@ -55,7 +56,9 @@ struct flight_report {
                                 ///< next one sees; NaN where it sees none
   std::vector<float> gsd;       ///< of every ray that counts: depth / focal length
   std::size_t n_rays = 0;
-  double area = 0;                   ///< of the faces that coverage is about
+  std::vector<double> off_normal;  ///< radians, of each frame: from its view to the one that faces
+                                   ///< the surface in its middle; NaN where it sees none there
+  double area = 0;                 ///< of the faces that coverage is about
   std::vector<seen_sample> samples;  ///< evenly by area
 
   /// Share of the area that at least `n` views see.
@@ -132,6 +135,17 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
   return points;
 }
 
+/// Angle from a view to the one that faces the surface.
+inline double off_normal(const math::view& v,
+                         const mesh::ray_surface& surface,
+                         const measure_options& options) {
+  const auto facing = facing_direction(v.world_from_camera, v.camera, surface, options.max_distance,
+                                       options.labels);
+  if (!facing) return std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector3d ahead = v.world_from_camera.rotation.col(2);
+  return std::atan2(ahead.cross(*facing).norm(), ahead.dot(*facing));
+}
+
 /// Whether the surface lets a view see a point that lies in its image.
 inline bool sees(const math::view& v,
                  const Eigen::Vector3d& p,
@@ -169,8 +183,10 @@ inline namespace AIB_ISA {
 
   std::vector<std::vector<float>> gsd(views.size());
   report.overlap.assign(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  report.off_normal.resize(views.size());
   for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
+      report.off_normal[i] = detail::off_normal(views[i], surface, options);
       const auto points = detail::points_of(views[i], surface, options, gsd[i]);
       if (i + 1 == views.size() || points.empty()) continue;
       const auto seen = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {

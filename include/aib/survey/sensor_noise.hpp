@@ -32,6 +32,7 @@ struct sensor_noise_options {
   std::uint64_t frame = 0;  ///< frames differ by it, whatever their order
   survey::transfer transfer = transfer::srgb;
   unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 /// Light of an sRGB number, both in 0..1.
@@ -121,7 +122,7 @@ raster::image<Pixel> sensor_noise(raster::view<const Pixel> image,
   }
   raster::image<Pixel> noisy(image.width, image.height);
   const std::uint64_t of_frame = random_bits(options.seed, options.frame);
-  for_each_chunk(image.height, 16, options.threads, {}, [&](const chunk& c) {
+  for_each_chunk(image.height, 16, options.threads, options.control, [&](const chunk& c) {
     for (std::size_t y = c.begin; y < c.end; ++y) {
       for (std::size_t x = 0; x < image.width; ++x) {
         random_engine random(random_bits(of_frame, y * image.width + x));

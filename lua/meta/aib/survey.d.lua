@@ -39,12 +39,14 @@ function flight_path:reversed() end
 ---@field pitch? number  # positive looks down, and flies as much higher; 0
 ---@field mesh? aib.Mesh  # the convex hull of its ground plan is flown round, over its heights
 ---@field labels? string[]  # of the faces with these labels alone
----@field footprint? number[][]  # or corners {x, y} of a convex polygon; then low and high are needed
+---@field footprint? number[][]  # or corners {x, y} of a polygon that does not cross itself; then low and high are needed
 ---@field low? number  # heights that the frames cover
 ---@field high? number
 ---@field sides? integer[]  # {first, last} of the edges, anticlockwise, edge 1 from corner 1; all round by default
 
----Rows round a building, flown to and fro from the lowest up, in arcs round the corners, looking along the inward normal.
+---Rows round a building, flown to and fro from the lowest up, in arcs round the corners, looking along the inward normal;
+---into an inner corner the camera turns on its way. No wall is nearer than the stand-off: an opening narrower than twice
+---of it is passed by.
 ---@param options aib.FacadeOptions
 ---@return aib.FlightPath path
 function survey.facade(options) end
@@ -100,6 +102,7 @@ function survey.join(paths) end
 ---@field aim? "path"|"normal"  # look as the path says (default), or along the normal of the surface that is seen
 ---@field speed? number  # m/s, gives the stamps; 2
 ---@field gimbal_rate? number  # degrees a second, largest turn of the view; 60
+---@field gimbal? "slow"|"lag"  # where the view would turn faster: the flight slows down (default), or the view lags behind
 ---@field name? string  # of the images, counted from 0: "%06d.png"
 
 ---@class aib.FlightPlan
@@ -117,7 +120,10 @@ function survey.join(paths) end
 ---@field largest_push number
 ---@field min_distance? number  # of the frames and the way between them to the mesh
 ---@field min_distance_frame? string  # at or behind which that is
----@field n_gimbal_limited integer  # frames whose view lags behind
+---@field n_gimbal_limited integer  # frames on whose way the gimbal is the limit
+---@field gimbal_delay number  # seconds that slowing down for it takes
+---@field view_lags number[]  # of each frame, degrees from the view as planned; 0 but for gimbal = "lag"
+---@field largest_view_lag number
 
 ---Places frames on a path, evenly by what the image moves: exactly `frames`, or as few as keep the overlap.
 ---@param path aib.FlightPath
@@ -141,6 +147,8 @@ function survey.fly(path, options) end
 ---@field overlaps number[]  # of each frame but the last; NaN where it is blind
 ---@field gsd_mm { mean: number, median: number, p05: number, p95: number, max: number }  # depth / focal length of the rays
 ---@field hit_share number  # of the rays that hit faces that count
+---@field off_normal { mean: number, median: number, p95: number, max: number }  # degrees from a view to the one that faces the surface in its middle
+---@field off_normals number[]  # of each frame; NaN where it sees none there
 ---@field coverage table<integer, number>  # share of the area that at least 1, 2, 3, 5, 10 views see
 ---@field incidence table<integer, number>  # share of the area that a view sees within 15, 30, 45, 60, 75 degrees of the normal
 ---@field n_views_mean number  # views that see a point
