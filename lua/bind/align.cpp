@@ -113,6 +113,7 @@ align::icp_options icp_options(options& o, const session& s) {
   i.max_iterations = o.count("max_iterations", i.max_iterations);
   i.relative_change = o.number("relative_change", i.relative_change);
   i.threads = s.threads;
+  i.control = s.control;
   return i;
 }
 

@@ -269,7 +269,7 @@ void bind_preparation(module& m) {
              [](const cloud::cloud& c, const sol::table& volume) { return crop(c, volume); })
       .function("without_statistical_outliers", {"cloud", "options"},
                 [](session& s, const cloud::cloud& c, options& o) {
-                  cloud::statistical_options how{.threads = s.threads};
+                  cloud::statistical_options how{.threads = s.threads, .control = s.control};
                   how.neighbours = o.count("neighbours", how.neighbours);
                   how.ratio = o.number("ratio", how.ratio);
                   o.done();
@@ -277,7 +277,7 @@ void bind_preparation(module& m) {
                 })
       .function("without_radius_outliers", {"cloud", "options"},
                 [](session& s, const cloud::cloud& c, options& o) {
-                  cloud::radius_options how{.threads = s.threads};
+                  cloud::radius_options how{.threads = s.threads, .control = s.control};
                   how.radius = o.number("radius", how.radius);
                   how.neighbours = o.count("neighbours", how.neighbours);
                   o.done();
@@ -291,7 +291,7 @@ void bind_preparation(module& m) {
                 })
       .function("with_normals", {"cloud", "options"},
                 [](session& s, const cloud::cloud& c, options& o) {
-                  cloud::normal_options how{.threads = s.threads};
+                  cloud::normal_options how{.threads = s.threads, .control = s.control};
                   how.neighbours = o.count("neighbours", how.neighbours);
                   o.done();
                   return cloud::with_normals(c, how);
@@ -316,7 +316,7 @@ void bind_metrics(module& m) {
                 })
       .function("normal_consistency", {"est", "ref"},
                 [](lua_State* l, session& s, const cloud::cloud& est, const cloud::cloud& ref) {
-                  const auto n = cloud::normal_consistency(est, ref, s.threads);
+                  const auto n = cloud::normal_consistency(est, ref, s.threads, s.control);
                   record r(l);
                   r.set("estimate_mean", n.estimate_mean).set("estimate_median", n.estimate_median);
                   r.set("reference_mean", n.reference_mean);

@@ -142,7 +142,7 @@ void bind_parts(module& m) {
                   const auto search = distance_options(o, s);
                   const auto tau = o.numbers("tau", {});
                   o.done();
-                  const auto labels = cloud::nearest_labels(est, ref, s.threads);
+                  const auto labels = cloud::nearest_labels(est, ref, s.threads, s.control);
                   const auto both = cloud::distances_both_ways(est, ref, search);
                   return as_records(l, cloud::by_label(both, labels, ref.labels, search), tau);
                 });
@@ -151,7 +151,7 @@ void bind_parts(module& m) {
 void bind_values(module& m) {
   m.function("offsets", {"from", "ref"},
              [](session& s, const cloud::cloud& from, const cloud::cloud& ref) {
-               return cloud::offsets_along_normals(from, ref, s.threads);
+               return cloud::offsets_along_normals(from, ref, s.threads, s.control);
              })
       .function("colored", {"cloud", "values", "options"},
                 [](const cloud::cloud& c, const sol::object& values, options& o) {

@@ -34,6 +34,7 @@ sample::unproject_options unproject_options(options& o, const session& s) {
   u.meaning = o.choice("depth", u.meaning,
                        {{"planar", depth_meaning::planar}, {"range", depth_meaning::range}});
   u.threads = s.threads;
+  u.control = s.control;
   return u;
 }
 
@@ -100,7 +101,8 @@ void bind_sample(lua_State* state) {
                                          {{"uniform", sample::spread::uniform},
                                           {"poisson", sample::spread::poisson}}),
                       .seed = static_cast<std::uint64_t>(o.integer("seed", 1)),
-                      .threads = s.threads};
+                      .threads = s.threads,
+                      .control = s.control};
                   o.done();
                   auto samples = sample::mesh(surface, how);
                   record info(l);
@@ -109,8 +111,8 @@ void bind_sample(lua_State* state) {
                   return results(std::move(samples.points), info);
                 })
       .function("thin", {"cloud", "options"},
-                [](const cloud::cloud& points, options& o) {
-                  sample::thin_options how;
+                [](session& s, const cloud::cloud& points, options& o) {
+                  sample::thin_options how{.control = s.control};
                   how.spacing = o.number("spacing", how.spacing);
                   how.seed = static_cast<std::uint64_t>(o.integer("seed", 1));
                   o.done();

@@ -23,6 +23,7 @@ inline record bootstrap_record(lua_State* state, const std::vector<double>& valu
   b.resamples = o.count("resamples", b.resamples);
   b.level = o.number("level", b.level);
   b.seed = o.count("seed", b.seed);
+  b.control = session::of(state).control;
   o.done();
   const auto i = stats::bootstrap_mean(values, b);
   return record(state)

@@ -106,11 +106,17 @@ class error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A file cannot be opened, read or written.
+/// A file cannot be opened or read.
 class io_error : public error {
  public:
   io_error(const std::filesystem::path& path, std::string_view what)
       : error(message(path.string(), ": ", what)) {}
+};
+
+/// A file cannot be written: not the input is at fault.
+class output_error : public io_error {
+ public:
+  using io_error::io_error;
 };
 
 /// One-based line of a text file.
@@ -1610,6 +1616,11 @@ struct control {
       {};  ///< called with 0..1, never from two threads at once
 };
 
+/// Throws stopped_error when `control.stop` was requested: for long loops that are no chunks.
+inline void demand_go(const control& control) {
+  if (control.stop.stop_requested()) throw stopped_error("stopped");
+}
+
 /// Threads that the process may use: affinity mask and cgroup quota, at least 1.
 unsigned available_threads();
 
@@ -1786,6 +1797,7 @@ struct icp_options {
   std::size_t max_iterations = 100;  ///< for each distance of the schedule
   double relative_change = 1e-9;     ///< of fitness and rmse, below which it has converged
   unsigned threads = 0;              ///< 0: all
+  aib::control control = {};         ///< its progress counts iterations
 };
 
 struct icp_result {
@@ -1816,8 +1828,9 @@ namespace detail {
 struct icp_points {
   std::vector<Eigen::Vector3d> position;
   std::vector<std::size_t> source;
+  const control& how;
 
-  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin) {
+  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin, const control& h) : how(h) {
     for (std::size_t i = 0; i < c.size(); ++i) {
       if (!cloud::is_finite(c.points[i])) continue;
       position.push_back(c.position(i) - origin);
@@ -1831,6 +1844,7 @@ struct icp_points {
   // The interface that nanoflann asks for.
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
   [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
     return position[i][static_cast<Eigen::Index>(axis)];
   }
   template <class Box>
@@ -1855,8 +1869,8 @@ class icp_solver {
              const icp_options& options)
       : options_(options),
         reference_cloud_(reference),
-        estimate_(estimate, reference.origin),
-        reference_(reference, reference.origin),
+        estimate_(estimate, reference.origin, options.control),
+        reference_(reference, reference.origin, options.control),
         tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
 
   [[nodiscard]] icp_result run();
@@ -1870,6 +1884,7 @@ class icp_solver {
                                                  double max_distance) const;
   [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
   [[nodiscard]] math::sim3 step(const icp_pairs& p) const;
+  void tell(double share) const;
   [[nodiscard]] math::sim3 plane_step(const icp_pairs& p) const;
 
   const icp_options& options_;
@@ -1882,14 +1897,15 @@ class icp_solver {
 inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
                                                     double max_distance) const {
   std::vector<std::size_t> match(moved.size(), none);
-  for_each_chunk(moved.size(), 4096, options_.threads, {}, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      std::size_t index = 0;
-      double squared = 0;
-      tree_.knnSearch(moved[i].data(), 1, &index, &squared);
-      if (squared < max_distance * max_distance) match[i] = index;
-    }
-  });
+  for_each_chunk(moved.size(), 4096, options_.threads, {options_.control.stop},
+                 [&](const chunk& c) {
+                   for (std::size_t i = c.begin; i < c.end; ++i) {
+                     std::size_t index = 0;
+                     double squared = 0;
+                     tree_.knnSearch(moved[i].data(), 1, &index, &squared);
+                     if (squared < max_distance * max_distance) match[i] = index;
+                   }
+                 });
   return match;
 }
 
@@ -1945,7 +1961,12 @@ inline math::sim3 icp_solver::step(const icp_pairs& p) const {
   return umeyama(p.estimate, p.reference, {.scale = options_.with_scale});
 }
 
+inline void icp_solver::tell(double share) const {
+  if (options_.control.progress) options_.control.progress(share);
+}
+
 inline icp_result icp_solver::run() {
+  const auto most = static_cast<double>(options_.max_distance.size() * options_.max_iterations);
   const Eigen::Vector3d& origin = reference_cloud_.origin;
   const math::sim3 to_local{1, Eigen::Matrix3d::Identity(), -origin};
   math::sim3 now = to_local * options_.init * to_local.inverse();
@@ -1963,12 +1984,13 @@ inline icp_result icp_solver::run() {
       result.converged = std::abs(next.fitness - p.fitness) < options_.relative_change &&
                          std::abs(next.rmse - p.rmse) < options_.relative_change;
       p = std::move(next);
-      ++result.n_iterations;
+      tell(static_cast<double>(++result.n_iterations) / most);
     }
     result.fitness = p.fitness;
     result.rmse = p.rmse;
     result.n_pairs = p.estimate.size();
   }
+  tell(1);
   result.transform = to_local.inverse() * now * to_local;
   return result;
 }
@@ -2023,6 +2045,25 @@ inline constexpr const char* instruction_set = AIB_ISA_TEXT(AIB_ISA);
 
 #undef AIB_ISA_TEXT
 #undef AIB_ISA_TEXT_
+
+}  // namespace aib
+
+// aib/core/prefetch.hpp
+
+namespace aib {
+
+/// Tells the machine that something is read, or written, soon: for loops through memory whose order
+/// no machine foresees.
+inline void prefetch_read([[maybe_unused]] const void* p) {
+#if defined(__GNUC__)
+  __builtin_prefetch(p, 0);
+#endif
+}
+inline void prefetch_write([[maybe_unused]] void* p) {
+#if defined(__GNUC__)
+  __builtin_prefetch(p, 1);
+#endif
+}
 
 }  // namespace aib
 
@@ -2368,138 +2409,218 @@ class buffer {
 
 }  // namespace aib::search
 
+// aib/core/simd_integers.hpp
+
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace aib {
+
+inline namespace AIB_ISA {
+
+/// Eight unsigned integers that are calculated together, modulo 2^32. `load` and `store` need no
+/// alignment; shifts are by less than 32.
+#if !defined(AIB_PLAIN) && defined(__AVX2__)
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  __m256i v;
+
+  static u32x8 load(const std::uint32_t* p) {
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
+  }
+  static u32x8 broadcast(std::uint32_t x) { return {_mm256_set1_epi32(static_cast<int>(x))}; }
+  void store(std::uint32_t* p) const { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), v); }
+
+  friend u32x8 operator&(u32x8 a, u32x8 b) { return {_mm256_and_si256(a.v, b.v)}; }
+  friend u32x8 operator|(u32x8 a, u32x8 b) { return {_mm256_or_si256(a.v, b.v)}; }
+  friend u32x8 operator^(u32x8 a, u32x8 b) { return {_mm256_xor_si256(a.v, b.v)}; }
+  friend u32x8 operator-(u32x8 a, u32x8 b) { return {_mm256_sub_epi32(a.v, b.v)}; }
+  friend u32x8 operator<<(u32x8 a, int bits) { return {_mm256_slli_epi32(a.v, bits)}; }
+  friend u32x8 operator>>(u32x8 a, int bits) { return {_mm256_srli_epi32(a.v, bits)}; }
+};
+
+#elif !defined(AIB_PLAIN) && defined(__SSE2__)
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  __m128i lo, hi;
+
+  static u32x8 load(const std::uint32_t* p) {
+    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)),
+            _mm_loadu_si128(reinterpret_cast<const __m128i*>(p + 4))};
+  }
+  static u32x8 broadcast(std::uint32_t x) {
+    const __m128i all = _mm_set1_epi32(static_cast<int>(x));
+    return {all, all};
+  }
+  void store(std::uint32_t* p) const {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), lo);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 4), hi);
+  }
+
+  friend u32x8 operator&(u32x8 a, u32x8 b) {
+    return {_mm_and_si128(a.lo, b.lo), _mm_and_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator|(u32x8 a, u32x8 b) {
+    return {_mm_or_si128(a.lo, b.lo), _mm_or_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator^(u32x8 a, u32x8 b) {
+    return {_mm_xor_si128(a.lo, b.lo), _mm_xor_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator-(u32x8 a, u32x8 b) {
+    return {_mm_sub_epi32(a.lo, b.lo), _mm_sub_epi32(a.hi, b.hi)};
+  }
+  friend u32x8 operator<<(u32x8 a, int bits) {
+    return {_mm_slli_epi32(a.lo, bits), _mm_slli_epi32(a.hi, bits)};
+  }
+  friend u32x8 operator>>(u32x8 a, int bits) {
+    return {_mm_srli_epi32(a.lo, bits), _mm_srli_epi32(a.hi, bits)};
+  }
+};
+
+#else
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  std::uint32_t v[width];
+
+  static u32x8 load(const std::uint32_t* p) {
+    u32x8 out;
+    std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static u32x8 broadcast(std::uint32_t x) {
+    return each([x](std::size_t) { return x; });
+  }
+  void store(std::uint32_t* p) const { std::memcpy(p, v, sizeof v); }
+
+  template <class Lane>
+  static u32x8 each(Lane lane) {
+    u32x8 out;
+    for (std::size_t i = 0; i < width; ++i) out.v[i] = lane(i);
+    return out;
+  }
+  friend u32x8 operator&(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] & b.v[i]; });
+  }
+  friend u32x8 operator|(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] | b.v[i]; });
+  }
+  friend u32x8 operator^(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] ^ b.v[i]; });
+  }
+  friend u32x8 operator-(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] - b.v[i]; });
+  }
+  friend u32x8 operator<<(const u32x8& a, int bits) {
+    return each([&](std::size_t i) { return a.v[i] << bits; });
+  }
+  friend u32x8 operator>>(const u32x8& a, int bits) {
+    return each([&](std::size_t i) { return a.v[i] >> bits; });
+  }
+};
+
+#endif
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
+
 // aib/search/hilbert.hpp
 
 namespace aib::search {
+inline namespace AIB_ISA {
 
 namespace detail {
 
-/// How the curve lies in one cell: which axis stands at each place, which places run backwards,
-/// and whether the walk through the eight children is reversed.
-struct hilbert_state {
-  std::array<unsigned, 3> axis{0, 1, 2};
-  std::array<unsigned, 3> flip{0, 0, 0};
-  unsigned reversed = 0;
-};
-
-/// One level down: the child's place on the curve and how the curve lies in the child.
-struct hilbert_step {
-  unsigned place;  ///< 0..7
-  hilbert_state child;
-};
-
-/// `octant` has bit k set in the upper half of axis k.
-/// Source: Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004, one bit plane.
-constexpr hilbert_step descend(hilbert_state state, unsigned octant) {
-  std::array<unsigned, 3> bit{};
-  for (std::size_t k = 0; k < 3; ++k) bit[k] = ((octant >> state.axis[k]) & 1) ^ state.flip[k];
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (bit[k]) {
-      state.flip[0] ^= 1;
-    } else {
-      const unsigned axis = state.axis[0], flip = state.flip[0];
-      state.axis[0] = state.axis[k], state.flip[0] = state.flip[k];
-      state.axis[k] = axis, state.flip[k] = flip;
-    }
-  }
-  const unsigned second = bit[1] ^ bit[0];
-  const unsigned third = bit[2] ^ second;
-  const unsigned r = state.reversed;
-  state.reversed ^= third;
-  return {(bit[0] ^ r) << 2 | (second ^ r) << 1 | (third ^ r), state};
+/// All bits set where bit `bit` of a lane is.
+inline u32x8 spread_bit(u32x8 a, int bit) {
+  return u32x8::broadcast(0) - ((a >> bit) & u32x8::broadcast(1));
 }
 
-inline constexpr std::array<std::array<unsigned, 3>, 6> axis_orders{
-    {{0, 1, 2}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}}};
-
-constexpr unsigned number_of(const hilbert_state& s) {
-  unsigned order = 0;
-  while (axis_orders[order] != s.axis) ++order;
-  return order << 4 | (s.flip[0] | s.flip[1] << 1 | s.flip[2] << 2) << 1 | s.reversed;
+/// One level of the curve undone on one axis: the lower bits of x are turned over where the axis is
+/// in its upper half, and change places with those of the axis where it is not.
+inline void undo_level(u32x8& x, u32x8& axis, int bit) {
+  const u32x8 below = u32x8::broadcast((std::uint32_t{1} << bit) - 1);
+  const u32x8 flip = spread_bit(axis, bit) & below;
+  const u32x8 swap = (x ^ axis) & (flip ^ below);
+  x = x ^ (flip | swap);
+  axis = axis ^ swap;
 }
 
-constexpr hilbert_state state_of(unsigned number) {
-  return {axis_orders[number >> 4],
-          {(number >> 1) & 1, (number >> 2) & 1, (number >> 3) & 1},
-          number & 1};
+/// The low 10 bits of a, two zeros between each.
+inline u32x8 spread(u32x8 a) {
+  const auto mask = [](std::uint32_t bits) { return u32x8::broadcast(bits); };
+  a = a & mask(0x3ff);
+  a = (a | a << 16) & mask(0x030000ff);
+  a = (a | a << 8) & mask(0x0300f00f);
+  a = (a | a << 4) & mask(0x030c30c3);
+  return (a | a << 2) & mask(0x09249249);
 }
 
-inline constexpr unsigned hilbert_states = 96;
-
-/// One level: [state][octant] -> next state << 3 | place.
-constexpr std::array<std::uint16_t, hilbert_states * 8> make_octant_table() {
-  std::array<std::uint16_t, hilbert_states * 8> table{};
-  for (unsigned number = 0; number < hilbert_states; ++number) {
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const hilbert_step step = descend(state_of(number), octant);
-      table[number * 8 + octant] =
-          static_cast<std::uint16_t>(number_of(step.child) << 3 | step.place);
-    }
-  }
-  return table;
-}
-
-/// Two levels in one look-up: [state][two octants] -> next state << 6 | two places. 12 KB.
-constexpr std::array<std::uint16_t, hilbert_states * 64> make_hilbert_table() {
-  const auto octants = make_octant_table();
-  std::array<std::uint16_t, hilbert_states * 64> table{};
-  for (unsigned i = 0; i < table.size(); ++i) {
-    const unsigned upper = octants[i / 64 * 8 + i / 8 % 8];
-    const unsigned lower = octants[(upper >> 3) * 8 + i % 8];
-    table[i] = static_cast<std::uint16_t>((lower >> 3) << 6 | (upper & 7) << 3 | (lower & 7));
-  }
-  return table;
-}
-
-inline constexpr auto hilbert_table = make_hilbert_table();
-
-/// The low 21 bits of x, two zeros between each.
-constexpr std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
+/// The low 10 bits of x, y and z in turn.
+inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
+  return spread(x) << 2 | spread(y) << 1 | spread(z);
 }
 
 }  // namespace detail
 
-/// Place of a cell along the Hilbert curve through a cube of 2^bits cells a side: neighbours on the
-/// curve are neighbours in space.
+/// Places of eight cells along the Hilbert curve through a cube of 2^bits cells a side: neighbours
+/// on the curve are neighbours in space.
 ///
-/// bits   even, at most 20; x, y, z < 2^bits
-[[nodiscard]] constexpr std::uint64_t hilbert_key(std::uint32_t x,
-                                                  std::uint32_t y,
-                                                  std::uint32_t z,
-                                                  int bits) {
-  const std::uint64_t octants = detail::spread(x) | detail::spread(y) << 1 | detail::spread(z) << 2;
-  std::uint64_t key = 0;
-  unsigned state = 0;
-  for (int shift = 3 * bits - 6; shift >= 0; shift -= 6) {
-    const unsigned entry = detail::hilbert_table[state * 64 + ((octants >> shift) & 63)];
-    state = entry >> 6;
-    key = key << 6 | (entry & 63);
+/// bits   1 .. 20; x, y, z < 2^bits
+/// Source: Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004.
+[[nodiscard]] inline std::array<std::uint64_t, 8> hilbert_keys(u32x8 x,
+                                                               u32x8 y,
+                                                               u32x8 z,
+                                                               int bits) {
+  for (int bit = bits - 1; bit > 0; --bit) {
+    x = x ^ (detail::spread_bit(x, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    detail::undo_level(x, y, bit);
+    detail::undo_level(x, z, bit);
   }
-  return key;
+  y = y ^ x;  // Gray code
+  z = z ^ y;
+  u32x8 turned = u32x8::broadcast(0);
+  for (int bit = bits - 1; bit > 0; --bit) {
+    turned = turned ^ (detail::spread_bit(z, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+  }
+  x = x ^ turned;
+  y = y ^ turned;
+  z = z ^ turned;
+  std::array<std::uint32_t, 8> low, high;
+  detail::interleave(x, y, z).store(low.data());
+  detail::interleave(x >> 10, y >> 10, z >> 10).store(high.data());
+  std::array<std::uint64_t, 8> keys;
+  for (std::size_t i = 0; i < 8; ++i) keys[i] = std::uint64_t{high[i]} << 30 | low[i];
+  return keys;
 }
 
+}  // namespace AIB_ISA
 }  // namespace aib::search
 
 // aib/search/curve.hpp
 
 namespace aib::search {
+inline namespace AIB_ISA {
 
 /// A Hilbert curve through a cube of space. Points outside take the key of the nearest cell, so
 /// that a few strays do not take the resolution from all others.
 struct curve {
   Eigen::Vector3f low = Eigen::Vector3f::Zero();
   float cells_per_unit = 1;
-  int bits = 14;        ///< per axis, even
+  int bits = 14;        ///< per axis
   int index_bits = 22;  ///< what is left of 64 bits for the index of a point
 
-  [[nodiscard]] std::uint64_t key(const Eigen::Vector3f& p) const {
-    return hilbert_key(cell(p, 0), cell(p, 1), cell(p, 2), bits);
+  /// Keys of 1 .. 8 points; what is behind them is undefined.
+  [[nodiscard]] std::array<std::uint64_t, 8> keys(std::span<const Eigen::Vector3f> points) const {
+    std::uint32_t cells[3][8] = {};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) cells[axis][i] = cell(points[i], axis);
+    }
+    return hilbert_keys(u32x8::load(cells[0]), u32x8::load(cells[1]), u32x8::load(cells[2]), bits);
   }
 
  private:
@@ -2545,7 +2666,7 @@ inline interval bulk_of(std::vector<float>& values) {
   const std::size_t most = std::max<std::size_t>({a.size(), b.size(), 2});
   curve c;
   c.index_bits = static_cast<int>(std::bit_width(most - 1));
-  c.bits = std::min(14, (64 - c.index_bits) / 3) & ~1;
+  c.bits = std::min(14, (64 - c.index_bits) / 3);
   float extent = 0;
   std::vector<float> values;
   for (int axis = 0; axis < 3; ++axis) {
@@ -2560,6 +2681,7 @@ inline interval bulk_of(std::vector<float>& values) {
   return c;
 }
 
+}  // namespace AIB_ISA
 }  // namespace aib::search
 
 // aib/search/radix_sort.hpp
@@ -2690,8 +2812,12 @@ inline buffer<std::uint64_t> sort_along(std::span<const Eigen::Vector3f> points,
                                         const control& control) {
   buffer<std::uint64_t> words(points.size());
   for_each_chunk(points.size(), 1 << 16, threads, control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      words[i] = order.key(points[i]) << order.index_bits | i;
+    for (std::size_t first = c.begin; first < c.end; first += 8) {
+      const std::size_t count = std::min<std::size_t>(8, c.end - first);
+      const auto keys = order.keys(points.subspan(first, count));
+      for (std::size_t i = 0; i < count; ++i) {
+        words[first + i] = keys[i] << order.index_bits | (first + i);
+      }
     }
   });
   radix_sort(words, {order.index_bits, order.index_bits + 3 * order.bits}, threads, control);
@@ -2722,6 +2848,9 @@ inline void box_tree::fill_blocks(std::span<const Eigen::Vector3f> points,
   for_each_chunk(blocks_.size(), 4096, threads, control, [&](const chunk& c) {
     for (std::size_t b = c.begin; b < c.end; ++b) {
       keys_[b] = sorted[b * size] >> order.index_bits;
+      for (std::size_t ahead = 4 * size; ahead < 5 * size && b * size + ahead < n; ++ahead) {
+        prefetch_read(&points[sorted[b * size + ahead] & index_mask]);
+      }
       for (std::size_t j = 0; j < size; ++j) {
         const std::size_t place = std::min(b * size + j, n - 1);
         const auto i = static_cast<std::uint32_t>(sorted[place] & index_mask);
@@ -2868,11 +2997,10 @@ inline float nearest_one(const box_tree& tree,
                          std::uint32_t& near_block) {
   const auto visit = [&](std::uint32_t b) {
     const point_block& block = tree.blocks()[b];
-    const float least = lowest(min(squared_distances(q, block, 0), squared_distances(q, block, 8)));
-    if (least < bound) {
-      bound = least;
-      near_block = b;
-    }
+    const f32x8 least = min(squared_distances(q, block, 0), squared_distances(q, block, 8));
+    if (less(least, f32x8::broadcast(bound)) == 0) return;
+    bound = lowest(least);
+    near_block = b;
   };
   visit(near_block);
   pending_boxes pending;
@@ -3345,10 +3473,12 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
       const std::size_t count = std::min(group, c.end - first);
       std::uint32_t start[group] = {};
       for (std::size_t b = 0; b < count; ++b) start[b] = merge.start_of(first + b);
+      const std::size_t place = first * point_block::size;
+      const auto index = queries.index().subspan(
+          place, std::min(count * point_block::size, queries.size() - place));
+      for (const std::uint32_t i : index) prefetch_write(&squared[i]);
       const auto found = search->search(queries.blocks().subspan(first, count), start);
-      const auto index = queries.index().subspan(first * point_block::size);
-      const std::size_t used = std::min(found.size(), index.size());
-      for (std::size_t i = 0; i < used; ++i) squared[index[i]] = found[i];
+      for (std::size_t i = 0; i < index.size(); ++i) squared[index[i]] = found[i];
     }
   });
   return squared;
@@ -3890,7 +4020,9 @@ struct neighbour {
 /// Borrows nothing. For the one nearest point of millions see cloud::distances.
 class neighbours {
  public:
-  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  /// control   asked while the tree is built
+  explicit neighbours(const cloud& c, const control& control = {})
+      : points_(c, control), tree_(3, points_, {10}) {}
   neighbours(const neighbours&) = delete;
   neighbours& operator=(const neighbours&) = delete;
 
@@ -3948,8 +4080,9 @@ class neighbours {
     Eigen::Vector3d origin;
     std::vector<Eigen::Vector3d> position;
     std::vector<std::size_t> source;
+    control how;
 
-    explicit finite_positions(const cloud& c) : origin(c.origin) {
+    finite_positions(const cloud& c, const control& h) : origin(c.origin), how(h) {
       for (std::size_t i = 0; i < c.size(); ++i) {
         if (!is_finite(c.points[i])) continue;
         position.push_back(c.points[i].cast<double>());
@@ -3960,6 +4093,7 @@ class neighbours {
     // The interface that nanoflann asks for.
     [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
     [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
       return position[i][static_cast<Eigen::Index>(axis)];
     }
     template <class Box>
@@ -3984,17 +4118,18 @@ namespace aib::cloud {
 /// Throws argument_error if the reference has no labels, undefined_error if it has no finite point.
 [[nodiscard]] inline std::vector<std::uint32_t> nearest_labels(const cloud& points,
                                                                const cloud& labelled,
-                                                               unsigned threads = 0) {
+                                                               unsigned threads = 0,
+                                                               const control& control = {}) {
   if (labelled.labels.size() != labelled.size()) {
     throw argument_error("cloud::nearest_labels: a reference with labels expected");
   }
-  const neighbours search(labelled);
+  const neighbours search(labelled, control);
   if (search.size() == 0) {
     throw undefined_error(message("cloud::nearest_labels: no finite point in the reference (",
                                   labelled.size(), " points)"));
   }
   std::vector<std::uint32_t> labels(points.size());
-  for_each_chunk(points.size(), 1024, threads, {}, [&](const chunk& c) {
+  for_each_chunk(points.size(), 1024, threads, control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
       if (!is_finite(points.points[i])) continue;
       labels[i] = labelled.labels[search.nearest(points.position(i), 1).front().index];
@@ -4826,6 +4961,7 @@ namespace aib::cloud {
 struct normal_options {
   std::size_t neighbours = 30;  ///< the point itself included
   unsigned threads = 0;         ///< 0: all
+  aib::control control = {};
 };
 
 /// The cloud with a normal for each point: the direction in which its nearest neighbours spread
@@ -4833,10 +4969,10 @@ struct normal_options {
 /// (0, 0, 1).
 /// Source: Hoppe et al., SIGGRAPH 1992, section 3.2.
 [[nodiscard]] inline cloud with_normals(const cloud& c, const normal_options& options = {}) {
-  const neighbours search(c);
+  const neighbours search(c, options.control);
   cloud result = c;
   result.normals.assign(c.size(), Eigen::Vector3f(0, 0, 1));
-  for_each_chunk(c.size(), 1024, options.threads, {}, [&](const chunk& part) {
+  for_each_chunk(c.size(), 1024, options.threads, options.control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (!is_finite(c.points[i])) continue;
       const auto found = search.nearest(c.position(i), options.neighbours);
@@ -4868,10 +5004,13 @@ struct normal_consistency_result {
 
 namespace detail {
 
-inline std::vector<double> normal_cosines(const cloud& from, const cloud& to, unsigned threads) {
-  const neighbours search(to);
+inline std::vector<double> normal_cosines(const cloud& from,
+                                          const cloud& to,
+                                          unsigned threads,
+                                          const control& control) {
+  const neighbours search(to, control);
   std::vector<double> cosine(from.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& part) {
+  for_each_chunk(from.size(), 1024, threads, control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (!is_finite(from.points[i])) continue;
       const auto found = search.nearest(from.position(i), 1);
@@ -4899,14 +5038,15 @@ inline double mean_of(std::span<const double> values) {
 /// Source: Wang et al., "Continuous 3D perception model with persistent state" (CUT3R), CVPR 2025.
 [[nodiscard]] inline normal_consistency_result normal_consistency(const cloud& estimate,
                                                                   const cloud& reference,
-                                                                  unsigned threads = 0) {
+                                                                  unsigned threads = 0,
+                                                                  const control& control = {}) {
   for (const cloud* c : {&estimate, &reference}) {
     if (c->normals.size() != c->size()) {
       throw argument_error("cloud::normal_consistency: clouds with normals expected");
     }
   }
-  const auto e = detail::normal_cosines(estimate, reference, threads);
-  const auto r = detail::normal_cosines(reference, estimate, threads);
+  const auto e = detail::normal_cosines(estimate, reference, threads, control);
+  const auto r = detail::normal_cosines(reference, estimate, threads, control);
   const std::span<const double> es(e), rs(r);
   return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
 }
@@ -4979,18 +5119,19 @@ class offsets {
 /// finite point.
 [[nodiscard]] inline offsets offsets_along_normals(const cloud& from,
                                                    const cloud& reference,
-                                                   unsigned threads = 0) {
+                                                   unsigned threads = 0,
+                                                   const control& control = {}) {
   if (reference.normals.size() != reference.size()) {
     throw argument_error("cloud::offsets_along_normals: a reference with normals expected");
   }
-  const neighbours search(reference);
+  const neighbours search(reference, control);
   if (search.size() == 0) {
     throw undefined_error(
         message("cloud::offsets_along_normals: no finite point in the reference (",
                 reference.size(), " points)"));
   }
   std::vector<float> values(from.size(), std::numeric_limits<float>::quiet_NaN());
-  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& c) {
+  for_each_chunk(from.size(), 1024, threads, control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
       if (!is_finite(from.points[i])) continue;
       const std::size_t nearest = search.nearest(from.position(i), 1).front().index;
@@ -5011,21 +5152,26 @@ struct statistical_options {
   std::size_t neighbours = 20;  ///< the point itself included
   double ratio = 2;             ///< standard deviations above the mean that are kept
   unsigned threads = 0;         ///< 0: all
+  aib::control control = {};
 };
 
 struct radius_options {
   double radius = 0;
   std::size_t neighbours = 2;  ///< more points than this, the point itself included, are kept
   unsigned threads = 0;        ///< 0: all
+  aib::control control = {};
 };
 
 namespace detail {
 
 /// A number for each point, of NaN where the point is not finite.
 template <class Measure>
-std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& measure) {
+std::vector<double> measure_points(const cloud& c,
+                                   unsigned threads,
+                                   const control& control,
+                                   Measure&& measure) {
   std::vector<double> values(c.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(c.size(), 1024, threads, {}, [&](const chunk& part) {
+  for_each_chunk(c.size(), 1024, threads, control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (is_finite(c.points[i])) values[i] = measure(c.position(i));
     }
@@ -5043,13 +5189,14 @@ std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& m
   if (options.neighbours == 0 || !(options.ratio > 0)) {
     throw argument_error("cloud::without_statistical_outliers: neighbours > 0, ratio > 0 expected");
   }
-  const neighbours search(c);
-  const auto spread = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    const auto found = search.nearest(p, options.neighbours);
-    double sum = 0;
-    for (const neighbour& n : found) sum += n.distance;
-    return sum / static_cast<double>(found.size());
-  });
+  const neighbours search(c, options.control);
+  const auto spread =
+      detail::measure_points(c, options.threads, options.control, [&](const Eigen::Vector3d& p) {
+        const auto found = search.nearest(p, options.neighbours);
+        double sum = 0;
+        for (const neighbour& n : found) sum += n.distance;
+        return sum / static_cast<double>(found.size());
+      });
   double sum = 0, squares = 0, n = 0;
   for (const double s : spread) {
     if (s > 0) sum += s, ++n;
@@ -5068,10 +5215,11 @@ std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& m
     throw argument_error(
         message("cloud::without_radius_outliers: radius > 0 expected, found ", options.radius));
   }
-  const neighbours search(c);
-  const auto count = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    return static_cast<double>(search.count_within(p, options.radius));
-  });
+  const neighbours search(c, options.control);
+  const auto count =
+      detail::measure_points(c, options.threads, options.control, [&](const Eigen::Vector3d& p) {
+        return static_cast<double>(search.count_within(p, options.radius));
+      });
   const auto least = static_cast<double>(options.neighbours);
   return select_where(c, [&](std::size_t i) { return count[i] > least; });
 }
@@ -8272,7 +8420,7 @@ inline output_file::output_file(std::filesystem::path path)
     open_beside();
     return;
   }
-  if (S_ISDIR(status.st_mode)) throw io_error(path_, "a file expected, found a folder");
+  if (S_ISDIR(status.st_mode)) throw output_error(path_, "a file expected, found a folder");
   if (::access(path_.c_str(), W_OK) != 0) fail("write");
   if (!S_ISREG(status.st_mode) || path_.string().starts_with("/dev/")) {
     file_ = std::fopen(path_.c_str(), "abe");
@@ -8302,7 +8450,7 @@ inline output_file::~output_file() {
 }
 
 inline void output_file::fail(const char* doing) const {
-  throw io_error(path_, message("cannot ", doing, ": ", std::strerror(errno)));
+  throw output_error(path_, message("cannot ", doing, ": ", std::strerror(errno)));
 }
 
 inline void output_file::write(const void* data, std::size_t n) {
@@ -8952,19 +9100,52 @@ struct float_positions {
 
 }  // namespace aib::io
 
+// aib/io/limits.hpp
+
+namespace aib::io {
+
+/// How much a file may hold: for readers of files that strangers give. What is packed (EXR, PNG,
+/// JPEG, NPZ) is refused before memory is asked for; of other formats, which need as much memory
+/// as the file has bytes, what was read is counted.
+struct limits {
+  std::uint64_t max_pixels = std::uint64_t{1} << 27;  ///< of a picture or a depth map
+  /// Points of a cloud; vertices, and triangles, of a mesh.
+  std::uint64_t max_points = std::numeric_limits<std::uint64_t>::max();
+  /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size is
+  /// refused where it needs more than `max_bytes`: arrays hardly compress so well, bombs do.
+  double max_ratio = 100;
+  std::uint64_t max_bytes = std::uint64_t{1} << 30;
+};
+
+/// Throws format_error where an image is larger than the limit.
+inline void demand_pixels(const std::filesystem::path& path,
+                          std::string_view format,
+                          std::uint64_t width,
+                          std::uint64_t height,
+                          const limits& limits) {
+  if (width == 0 || height <= limits.max_pixels / width) return;
+  throw format_error(path, message(format, ": ", width, "x", height, " pixels, at most ",
+                                   limits.max_pixels, " are allowed (max_pixels)"));
+}
+
+/// Throws format_error where there are more than the limit. what   "points", "triangles"
+inline void demand_points(const std::filesystem::path& path,
+                          std::string_view what,
+                          std::uint64_t n,
+                          const limits& limits) {
+  if (n <= limits.max_points) return;
+  throw format_error(
+      path, message(n, " ", what, ", at most ", limits.max_points, " are allowed (max_points)"));
+}
+
+}  // namespace aib::io
+
 // aib/io/npz.hpp
 
 #if defined(AIB_WITH_EXR) || defined(AIB_WITH_NPZ)
 #include <zlib.h>
 
 namespace aib::io {
-
-struct npz_options {
-  /// A member that inflates to more than `max_ratio` times its stored size is refused where it
-  /// needs more than `max_bytes`: arrays hardly compress so well, bombs do.
-  double max_ratio = 100;
-  std::uint64_t max_bytes = std::uint64_t{1} << 30;
-};
 
 /// What an array is, without its elements.
 struct array_info {
@@ -8988,7 +9169,7 @@ struct npz_place {
 class npz_file {
  public:
   /// Throws io_error where the file cannot be opened, format_error where it is not a zip.
-  explicit npz_file(const std::filesystem::path& path, const npz_options& options = {});
+  explicit npz_file(const std::filesystem::path& path, const io::limits& limits = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
@@ -9048,7 +9229,7 @@ class npz_file {
   [[noreturn]] void fail(const member& m, std::string_view what) const;
 
   input_file file_;
-  npz_options options_;
+  io::limits limits_;
   std::vector<member> members_;
 };
 
@@ -9111,8 +9292,8 @@ inline std::uint32_t crc32_of(std::string_view bytes) {
 
 }  // namespace detail
 
-inline npz_file::npz_file(const std::filesystem::path& path, const npz_options& options)
-    : file_(path), options_(options) {
+inline npz_file::npz_file(const std::filesystem::path& path, const io::limits& limits)
+    : file_(path), limits_(limits) {
   const directory d = find_directory();
   const std::string bytes = part(d.offset, d.bytes);
   byte_reader in(bytes, path);
@@ -9310,8 +9491,7 @@ inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
   const std::uint64_t begin = data_offset(m);
   if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
   const double ratio = static_cast<double>(m.size) / static_cast<double>(m.packed + 1);
-  if (m.size / best_ratio > m.packed ||
-      (ratio > options_.max_ratio && m.size > options_.max_bytes)) {
+  if (m.size / best_ratio > m.packed || (ratio > limits_.max_ratio && m.size > limits_.max_bytes)) {
     fail(m, message("inflates from ", m.packed, " to ", m.size, " bytes, which no array does"));
   }
   std::string out(static_cast<std::size_t>(n), '\0');
@@ -9382,8 +9562,10 @@ inline cloud::cloud read_npy_cloud(const std::filesystem::path& path) {
 ///
 /// 8-bit `colors` or `rgb` of the same shape come with it.
 /// Throws format_error where there is no such array.
-inline cloud::cloud read_npz_cloud(const std::filesystem::path& path, std::string key = {}) {
-  const npz_file file(path);
+inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
+                                   std::string key = {},
+                                   const limits& limits = {}) {
+  const npz_file file(path, limits);
   std::string names;
   std::vector<std::string> candidates;
   for (const std::string& name : file.names()) {
@@ -9453,7 +9635,9 @@ class array_frames {
 ///       with two axes or more
 ///
 /// Pickled members are never loaded. Throws format_error where there is no such array.
-array_frames read_array_frames(const std::filesystem::path& path, const std::string& key = {});
+array_frames read_array_frames(const std::filesystem::path& path,
+                               const std::string& key = {},
+                               const limits& limits = {});
 
 inline array_frames::array_frames(array values,
                                   const std::filesystem::path& path,
@@ -9518,13 +9702,15 @@ inline std::string depth_member(const npz_file& file, const std::string& key) {
 
 #endif
 
-inline array_frames read_array_frames(const std::filesystem::path& path, const std::string& key) {
+inline array_frames read_array_frames(const std::filesystem::path& path,
+                                      const std::string& key,
+                                      [[maybe_unused]] const limits& limits) {
   std::string begin(2, '\0');
   const input_file file(path);
   if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
   if (begin != "PK") return array_frames(read_npy(path), path, key);
 #if defined(AIB_WITH_NPZ)
-  const npz_file members(path);
+  const npz_file members(path, limits);
   const std::string name = detail::depth_member(members, key);
   return array_frames(members.read(name), path, name);
 #else
@@ -11965,6 +12151,7 @@ struct cloud_options {
   up_axis up = up_axis::z;                 ///< axis that points up in the file
   splat_rule splats = splat_rule::refuse;  ///< PLY files of 3D Gaussian splats
   std::string key = {};                    ///< NPZ: name of the array; empty: see read_npz_cloud
+  io::limits limits = {};
 };
 
 /// Reads a cloud; the format is told from the content, then from the extension: PLY, PCD, XYZ, CSV,
@@ -11999,7 +12186,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
       return read_npy_cloud(path);
     case file_kind::npz:
 #if defined(AIB_WITH_NPZ)
-      return read_npz_cloud(path, options.key);
+      return read_npz_cloud(path, options.key, options.limits);
 #else
       throw format_error(path, "this build of aib reads no NPZ; build it with zlib");
 #endif
@@ -12025,6 +12212,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
 
 inline cloud::cloud read_cloud(const std::filesystem::path& path, const cloud_options& options) {
   cloud::cloud result = detail::read_stored_cloud(path, options);
+  demand_points(path, "points", result.size(), options.limits);
   turn_z_up(result, options.up);
   return result;
 }
@@ -13224,7 +13412,7 @@ inline void write_colmap(const std::filesystem::path& folder,
   colmap::detail::check_writable(model);
   std::error_code code;
   std::filesystem::create_directories(folder, code);
-  if (code) throw io_error(folder, message("cannot create: ", code.message()));
+  if (code) throw output_error(folder, message("cannot create: ", code.message()));
   colmap::detail::write_cameras(folder, model, encoding);
   colmap::detail::write_images(folder, model, encoding);
   colmap::detail::write_points(folder, model, encoding);
@@ -13706,14 +13894,11 @@ struct exr_header {
   bool is_multipart = false;  ///< blocks say which part they belong to
 };
 
-/// Largest image that is read, in pixels.
-inline constexpr std::uint64_t exr_max_pixels = std::uint64_t{1} << 27;
-
 /// Reads and checks the header of an OpenEXR file. Throws format_error where it is damaged, where
-/// the image is larger than exr_max_pixels or than what the file can hold, and where it has what
+/// the image is larger than the limits or than what the file can hold, and where it has what
 /// aib does not read: deep data, sub-sampled channels. Source of the format: "OpenEXR File Layout",
 /// openexr.com.
-exr_header read_exr_header(const input_file& file);
+exr_header read_exr_header(const input_file& file, const limits& limits = {});
 
 /// "ZIP" and the like.
 [[nodiscard]] constexpr std::string_view name(exr_compression compression) {
@@ -13732,7 +13917,8 @@ namespace detail {
 
 class exr_header_parser {
  public:
-  explicit exr_header_parser(const input_file& file) : file_(file), stream_(file) {}
+  exr_header_parser(const input_file& file, const limits& limits)
+      : file_(file), limits_(limits), stream_(file) {}
 
   exr_header parse() {
     constexpr std::uint32_t magic = 20000630;
@@ -13843,11 +14029,10 @@ class exr_header_parser {
     w.min_y = in.read<std::int32_t>("exr: window");
     w.max_x = in.read<std::int32_t>("exr: window");
     w.max_y = in.read<std::int32_t>("exr: window");
-    const bool ordered = w.max_x >= w.min_x && w.max_y >= w.min_y;
-    if (!ordered || w.width() > exr_max_pixels / w.height()) {
+    if (w.max_x < w.min_x || w.max_y < w.min_y)
       fail(message("exr: window (", w.min_x, ", ", w.min_y, ") to (", w.max_x, ", ", w.max_y,
-                   ") is empty or larger than ", exr_max_pixels, " pixels"));
-    }
+                   ") is empty"));
+    demand_pixels(file_.path(), "exr", w.width(), w.height(), limits_);
     return w;
   }
 
@@ -13860,7 +14045,7 @@ class exr_header_parser {
     if (!seen_.display) part.display = part.data;
     if (!is_tiled_) part.tile_width = part.tile_height = 0;
     if (is_tiled_ && (!seen_.tiles || part.tile_width == 0 || part.tile_height == 0 ||
-                      part.tile_width > exr_max_pixels / part.tile_height))
+                      part.tile_width > limits_.max_pixels / part.tile_height))
       fail("exr: no size of the tiles in the header");
     n_blocks_.push_back(block_count(part));
   }
@@ -13893,6 +14078,7 @@ class exr_header_parser {
   [[noreturn]] void fail(std::string_view what) const { stream_.fail(what); }
 
   const input_file& file_;
+  const limits& limits_;
   byte_stream stream_;
   exr_header header_;
   bool is_tiled_ = false;
@@ -13902,8 +14088,8 @@ class exr_header_parser {
 
 }  // namespace detail
 
-inline exr_header read_exr_header(const input_file& file) {
-  return detail::exr_header_parser(file).parse();
+inline exr_header read_exr_header(const input_file& file, const limits& limits) {
+  return detail::exr_header_parser(file, limits).parse();
 }
 
 }  // namespace aib::io
@@ -14690,6 +14876,7 @@ struct exr_options {
   /// are decoded.
   std::size_t width = 0, height = 0;
   raster::nearest_rule rule = raster::nearest_rule::centre;
+  io::limits limits = {};
 };
 
 /// Reads a depth map from an OpenEXR file.
@@ -14867,7 +15054,7 @@ inline std::vector<std::string> exr_channel_names(const std::filesystem::path& p
 
 inline depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options) {
   const input_file file(path);
-  const exr_header header = read_exr_header(file);
+  const exr_header header = read_exr_header(file, options.limits);
   const detail::exr_chooser chooser(header, path);
   const detail::exr_choice choice = chooser.choose(options.channel);
   const exr_part& part = header.parts[choice.part];
@@ -14997,7 +15184,7 @@ class exr_writer {
 inline void write_exr(const std::filesystem::path& path,
                       raster::view<const float> depth,
                       const exr_write_options& options) {
-  if (depth.empty() || depth.size() > exr_max_pixels)
+  if (depth.empty() || depth.size() > limits{}.max_pixels)
     throw argument_error(message("io::write_exr: an image of ", depth.width, "x", depth.height));
   if (options.compression != exr_compression::none &&
       options.compression != exr_compression::zips && options.compression != exr_compression::zip)
@@ -15024,23 +15211,26 @@ struct png_header {
   bool is_gray = false, has_palette = false, has_alpha = false;
 };
 
-/// Needs libspng. All PNG functions throw format_error where a file is damaged, is larger than 2^27
-/// pixels, or has not the pixels that are asked for.
-png_header read_png_header(const std::filesystem::path& path);
+/// Needs libspng. All PNG functions throw format_error where a file is damaged, is larger than the
+/// limits, or has not the pixels that are asked for.
+png_header read_png_header(const std::filesystem::path& path, const limits& limits = {});
 
 /// The stored numbers of a gray PNG of 1 to 16 bits, or the indices of a palette: labels, or depth
 /// of 16 bits. Refuses colours and transparency.
-raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path);
+raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                           const limits& limits = {});
 
 /// Any PNG as 8-bit red, green, blue; transparency is dropped.
-raster::color_image read_png_color(const std::filesystem::path& path);
+raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits = {});
 
 /// Any PNG as 8-bit red, green, blue, alpha.
-raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path);
+raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path,
+                                                         const limits& limits = {});
 
 /// Any PNG as 16-bit red, green, blue: the stored numbers of a file of 16 bits. Transparency is
 /// dropped.
-raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path);
+raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path,
+                                                             const limits& limits = {});
 
 /// Writes gray, rgb or rgba pixels of 8 or 16 bits, whichever the type is. Throws argument_error
 /// for an empty image, io_error where the file cannot be written.
@@ -15056,7 +15246,7 @@ struct free_spng {
 /// An opened PNG file: header checked, pixels not yet read.
 class png_decoder {
  public:
-  explicit png_decoder(const std::filesystem::path& path)
+  png_decoder(const std::filesystem::path& path, const limits& limits)
       : path_(path), bytes_(read_file(path)), context_(spng_ctx_new(0)) {
     constexpr std::uint32_t max_side = 1u << 20;
     constexpr std::size_t max_chunk = std::size_t{1} << 26;
@@ -15065,9 +15255,9 @@ class png_decoder {
     check(spng_set_chunk_limits(context_.get(), max_chunk, max_chunk));
     check(spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size()));
     check(spng_get_ihdr(context_.get(), &ihdr_));
+    demand_pixels(path, "png", ihdr_.width, ihdr_.height, limits);
     // Deflate expands at most 1032 times: more pixels than that were never in the file.
-    const std::uint64_t pixels = std::uint64_t{ihdr_.width} * ihdr_.height;
-    if (pixels > std::uint64_t{1} << 27 || pixels / 8 > 1100 * bytes_.size())
+    if (std::uint64_t{ihdr_.width} * ihdr_.height / 8 > 1100 * bytes_.size())
       fail(message(ihdr_.width, "x", ihdr_.height, " pixels in a file of ", bytes_.size(),
                    " bytes"));
   }
@@ -15152,12 +15342,13 @@ constexpr int png_color_type() {
 
 }  // namespace detail
 
-inline png_header read_png_header(const std::filesystem::path& path) {
-  return detail::png_decoder(path).header();
+inline png_header read_png_header(const std::filesystem::path& path, const limits& limits) {
+  return detail::png_decoder(path, limits).header();
 }
 
-inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                                  const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   const png_header header = decoder.header();
   if (!(header.is_gray || header.has_palette) || header.has_alpha)
     decoder.fail("gray pixels without transparency expected, found colours or transparency");
@@ -15171,23 +15362,24 @@ inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& p
   return detail::unpack_samples(packed, header);
 }
 
-inline raster::color_image read_png_color(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   raster::color_image image(decoder.header().width, decoder.header().height);
   decoder.decode(SPNG_FMT_RGB8, image.data(), 3 * image.size());
   return image;
 }
 
-inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path,
+                                                                const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   raster::image<std::array<std::uint8_t, 4>> image(decoder.header().width, decoder.header().height);
   decoder.decode(SPNG_FMT_RGBA8, image.data(), 4 * image.size());
   return image;
 }
 
 inline raster::image<std::array<std::uint16_t, 3>> read_png_color16(
-    const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+    const std::filesystem::path& path, const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   const png_header header = decoder.header();
   std::vector<std::array<std::uint16_t, 4>> pixels(header.width * header.height);
   decoder.decode(SPNG_FMT_RGBA16, pixels.data(), 8 * pixels.size());
@@ -15248,6 +15440,7 @@ struct depth_options {
   raster::nearest_rule rule = raster::nearest_rule::centre;
   std::size_t raw_width = 0, raw_height = 0;      ///< files without header (ETH3D): their size
   std::optional<math::camera> range_camera = {};  ///< the file holds distances along its rays
+  io::limits limits = {};
 };
 
 /// Reads a depth map; the format is told from the content, then from the extension: EXR, PFM, NPY,
@@ -15279,7 +15472,7 @@ namespace detail {
 
 inline depth::depth_map read_depth_array(const std::filesystem::path& path,
                                          const depth_options& options) {
-  const array_frames frames = read_array_frames(path, options.key);
+  const array_frames frames = read_array_frames(path, options.key, options.limits);
   if (!options.index && frames.size() > 1)
     throw argument_error(message(path.string(), ": ", frames.size(),
                                  " frames in the array; the option index says which to read"));
@@ -15294,7 +15487,8 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
   return read_exr(path, {.channel = options.channel,
                          .width = shrink ? options.width : 0,
                          .height = shrink ? options.height : 0,
-                         .rule = options.rule});
+                         .rule = options.rule,
+                         .limits = options.limits});
 #else
   static_cast<void>(options);
   throw format_error(path, "this build of aib reads no EXR; build it with zlib");
@@ -15304,12 +15498,12 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
 inline depth::depth_map read_png_depth(const std::filesystem::path& path,
                                        const depth_options& options) {
 #if defined(AIB_WITH_PNG)
-  const png_header header = read_png_header(path);
+  const png_header header = read_png_header(path, options.limits);
   if (header.bits != 16 || !header.is_gray)
     throw format_error(path,
                        "png: gray depth of 16 bits expected; 8 bits or colours are a picture "
                        "of depth, not depth");
-  const auto stored = read_png_gray(path);
+  const auto stored = read_png_gray(path, options.limits);
   depth::depth_map result{raster::image<float>(stored.width(), stored.height())};
   std::copy(stored.begin(), stored.end(), result.values.begin());
   if (options.scale == 0)
@@ -15400,7 +15594,9 @@ inline depth::depth_map read_depth(const std::filesystem::path& path,
                                    const depth_options& options) {
   detail::check_depth_options(options);
   const file_kind kind = kind_of(path);
-  return detail::finish_depth(detail::read_stored_depth(path, kind, options), kind, options);
+  depth::depth_map stored = detail::read_stored_depth(path, kind, options);
+  demand_pixels(path, "depth", stored.values.width(), stored.values.height(), options.limits);
+  return detail::finish_depth(std::move(stored), kind, options);
 }
 
 inline std::vector<depth::depth_map> read_depth_stack(const std::filesystem::path& path,
@@ -15412,9 +15608,12 @@ inline std::vector<depth::depth_map> read_depth_stack(const std::filesystem::pat
     stack.push_back(read_depth(path, options));
     return stack;
   }
-  const array_frames frames = read_array_frames(path, options.key);
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    stack.push_back(detail::finish_depth({frames.frame(i)}, kind, options));
+  const array_frames frames = read_array_frames(path, options.key, options.limits);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    depth::depth_map frame{frames.frame(i)};
+    demand_pixels(path, "depth", frame.values.width(), frame.values.height(), options.limits);
+    stack.push_back(detail::finish_depth(std::move(frame), kind, options));
+  }
   return stack;
 }
 
@@ -15462,12 +15661,21 @@ class jpeg_decoder {
   explicit jpeg_decoder(const std::string& bytes) {
     info_.err = jpeg_std_error(&errors_.base);
     errors_.base.error_exit = [](j_common_ptr info) {
-      auto* errors = reinterpret_cast<error_manager*>(info->err);
-      info->err->format_message(info, errors->text);
-      std::longjmp(errors->back, 1);
+      info->err->format_message(info, errors_of(info).text);
+      std::longjmp(errors_of(info).back, 1);
     };
-    errors_.base.output_message = [](j_common_ptr) {};
+    errors_.base.emit_message = [](j_common_ptr info, int level) {
+      if (level < 0)
+        info->err->error_exit(info);  // a warning: damage that libjpeg would paint over
+    };
     jpeg_create_decompress(&info_);
+    info_.progress = &monitor_;
+    monitor_.progress_monitor = [](j_common_ptr info) {
+      constexpr int most_scans = 100;  // of progressive pictures; a few bytes each make a bomb
+      if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= most_scans) return;
+      std::strcpy(errors_of(info).text, "more than 100 scans");
+      std::longjmp(errors_of(info).back, 1);
+    };
     bytes_ = reinterpret_cast<const unsigned char*>(bytes.data());
     n_bytes_ = bytes.size();
   }
@@ -15493,14 +15701,12 @@ class jpeg_decoder {
       jpeg_read_scanlines(&info_, &row, 1);
     }
     jpeg_finish_decompress(&info_);
-    return errors_.base.num_warnings == 0;
+    return true;
   }
 
   [[nodiscard]] std::size_t width() const { return info_.image_width; }
   [[nodiscard]] std::size_t height() const { return info_.image_height; }
-  [[nodiscard]] const char* error() const {
-    return errors_.text[0] != '\0' ? errors_.text : "damaged pixels";
-  }
+  [[nodiscard]] const char* error() const { return errors_.text; }
 
  private:
   struct error_manager {
@@ -15508,8 +15714,12 @@ class jpeg_decoder {
     std::jmp_buf back;
     char text[JMSG_LENGTH_MAX] = {};
   };
+  static error_manager& errors_of(j_common_ptr info) {
+    return *reinterpret_cast<error_manager*>(info->err);
+  }
   jpeg_decompress_struct info_ = {};
   error_manager errors_ = {};
+  jpeg_progress_mgr monitor_ = {};
   const unsigned char* bytes_ = nullptr;
   std::size_t n_bytes_ = 0;
 };
@@ -15517,13 +15727,16 @@ class jpeg_decoder {
 }  // namespace detail
 
 /// Reads a JPEG as 8-bit red, green, blue. Needs libjpeg (libjpeg-turbo).
-/// Throws format_error where the file is damaged or larger than 2^27 pixels.
-inline raster::color_image read_jpeg(const std::filesystem::path& path) {
+/// Throws format_error where the file is damaged or larger than the limits.
+inline raster::color_image read_jpeg(const std::filesystem::path& path, const limits& limits = {}) {
   const std::string bytes = read_file(path);
   detail::jpeg_decoder decoder(bytes);
   if (!decoder.read_header()) throw format_error(path, message("jpeg: ", decoder.error()));
-  if (decoder.width() * decoder.height() > std::size_t{1} << 27)
-    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(), " pixels"));
+  demand_pixels(path, "jpeg", decoder.width(), decoder.height(), limits);
+  // A block of 8 x 8 pixels takes a bit at least.
+  if (decoder.width() * decoder.height() / 512 > bytes.size())
+    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(),
+                                     " pixels in a file of ", bytes.size(), " bytes"));
   raster::color_image image(decoder.width(), decoder.height());
   if (!decoder.read_pixels(image.data()->data()))
     throw format_error(path, message("jpeg: ", decoder.error()));
@@ -15544,10 +15757,11 @@ namespace aib::io {
 
 /// Whether an image file holds one number a pixel (gray, or a palette) and no transparency, so that
 /// read_labels reads it. Throws as read_image does.
-inline bool is_label_image(const std::filesystem::path& path) {
+inline bool is_label_image(const std::filesystem::path& path,
+                           [[maybe_unused]] const limits& limits = {}) {
 #if defined(AIB_WITH_PNG)
   if (kind_of(path) == file_kind::png) {
-    const png_header header = read_png_header(path);
+    const png_header header = read_png_header(path, limits);
     return header.is_gray && !header.has_alpha;
   }
 #endif
@@ -15556,18 +15770,20 @@ inline bool is_label_image(const std::filesystem::path& path) {
 }
 
 /// Reads a picture, PNG or JPEG, as 8-bit colours. Transparency is dropped.
-/// Throws format_error where the file is damaged or no picture that this build reads.
-inline raster::color_image read_image(const std::filesystem::path& path) {
+/// Throws format_error where the file is damaged, larger than the limits, or no picture that this
+/// build reads.
+inline raster::color_image read_image(const std::filesystem::path& path,
+                                      [[maybe_unused]] const limits& limits = {}) {
   switch (kind_of(path)) {
     case file_kind::png:
 #if defined(AIB_WITH_PNG)
-      return read_png_color(path);
+      return read_png_color(path, limits);
 #else
       throw format_error(path, "this build of aib reads no PNG; build it with libspng");
 #endif
     case file_kind::jpeg:
 #if defined(AIB_WITH_JPEG)
-      return read_jpeg(path);
+      return read_jpeg(path, limits);
 #else
       throw format_error(path, "this build of aib reads no JPEG; build it with libjpeg");
 #endif
@@ -15577,10 +15793,11 @@ inline raster::color_image read_image(const std::filesystem::path& path) {
 }
 
 /// Reads masks and labels: the stored numbers of a gray PNG of 1 to 16 bits or of a palette.
-/// Throws format_error for colours, and where the file is damaged.
-inline raster::label_image read_labels(const std::filesystem::path& path) {
+/// Throws format_error for colours, and where the file is damaged or larger than the limits.
+inline raster::label_image read_labels(const std::filesystem::path& path,
+                                       [[maybe_unused]] const limits& limits = {}) {
 #if defined(AIB_WITH_PNG)
-  if (kind_of(path) == file_kind::png) return read_png_gray(path);
+  if (kind_of(path) == file_kind::png) return read_png_gray(path, limits);
 #endif
   throw format_error(path, "a gray PNG or one with a palette expected");
 }
@@ -16151,6 +16368,7 @@ namespace aib::io {
 
 struct mesh_options {
   up_axis up = up_axis::z;  ///< axis that points up in the file
+  io::limits limits = {};
 };
 
 /// Reads a mesh; the format is told from the content, then from the extension: PLY, OBJ, STL, GLB.
@@ -16186,6 +16404,8 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
 
 inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
   mesh::mesh result = detail::read_stored_mesh(path);
+  demand_points(path, "vertices", result.vertices.size(), options.limits);
+  demand_points(path, "triangles", result.triangles.size(), options.limits);
   turn_z_up(result, options.up);
   return result;
 }
@@ -22899,9 +23119,10 @@ inline packed_positions packed(const mesh::mesh& m) {
 namespace aib::sample {
 
 struct eliminate_options {
-  std::size_t n = 0;  ///< points that stay
-  double area = 0;    ///< of the surface that the points lie on, square units
-  unsigned threads = 0;
+  std::size_t n = 0;     ///< points that stay
+  double area = 0;       ///< of the surface that the points lie on, square units
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 namespace detail {
@@ -22911,12 +23132,13 @@ class crowd {
  public:
   crowd(const cloud::cloud& points, const eliminate_options& options)
       : points_(points),
-        search_(points),
+        control_(options.control),
+        search_(points, options.control),
         reach_(2 * std::sqrt(options.area /
                              (2 * std::numbers::sqrt3 * static_cast<double>(options.n)))),
         weight_(points.size()),
         gone_(points.size()) {
-    for_each_chunk(points.size(), 1024, options.threads, {}, [&](const chunk& c) {
+    for_each_chunk(points.size(), 1024, options.threads, control_, [&](const chunk& c) {
       for (std::size_t i = c.begin; i < c.end; ++i) {
         for (const std::size_t j : neighbours_of(i)) weight_[i] += pressure(i, j);
       }
@@ -22929,6 +23151,7 @@ class crowd {
     std::priority_queue<entry> queue;
     for (std::size_t i = 0; i < weight_.size(); ++i) queue.emplace(weight_[i], i);
     for (std::size_t left = weight_.size(); left > n;) {
+      demand_go(control_);
       const auto [weight, i] = queue.top();
       queue.pop();
       if (gone_[i] || weight != weight_[i]) continue;  // has been put in again with less
@@ -22965,6 +23188,7 @@ class crowd {
   }
 
   const cloud::cloud& points_;
+  const control& control_;
   cloud::neighbours search_;
   double reach_;
   std::vector<double> weight_;
@@ -22999,6 +23223,7 @@ namespace aib::sample {
 struct thin_options {
   double spacing = 0;  ///< in the unit of the cloud
   std::uint64_t seed = 1;
+  aib::control control = {};
 };
 
 namespace detail {
@@ -23070,6 +23295,7 @@ inline std::vector<std::size_t> shuffled(std::size_t n, std::uint64_t seed) {
   detail::spaced_points kept(options.spacing);
   std::vector<std::size_t> index;
   for (const std::size_t i : detail::shuffled(points.size(), options.seed)) {
+    demand_go(options.control);
     if (!cloud::is_finite(points.points[i])) continue;
     if (kept.keep(points.points[i].cast<double>())) index.push_back(i);
   }
@@ -23097,6 +23323,7 @@ struct mesh_options {
   spread method = spread::uniform;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 /// Points on a surface and how densely they lie.
@@ -23205,20 +23432,21 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
-    for (std::size_t t = c.begin; t < c.end; ++t) {
-      if (starts[t] == starts[t + 1]) continue;
-      const auto corner = aib::mesh::corners(surface, t);
-      const Eigen::Vector3f normal = unit_normal(corner);
-      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-        const Eigen::Vector3d p =
-            point_in(corner, uniform(options.seed, 2 * i + 1), uniform(options.seed, 2 * i + 2));
-        points.points[i] = p.cast<float>();
-        points.normals[i] = normal;
-        if (!points.labels.empty()) points.labels[i] = surface.labels[t];
-      }
-    }
-  });
+  for_each_chunk(surface.triangles.size(), 4096, options.threads, options.control,
+                 [&](const chunk& c) {
+                   for (std::size_t t = c.begin; t < c.end; ++t) {
+                     if (starts[t] == starts[t + 1]) continue;
+                     const auto corner = aib::mesh::corners(surface, t);
+                     const Eigen::Vector3f normal = unit_normal(corner);
+                     for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+                       const Eigen::Vector3d p = point_in(corner, uniform(options.seed, 2 * i + 1),
+                                                          uniform(options.seed, 2 * i + 2));
+                       points.points[i] = p.cast<float>();
+                       points.normals[i] = normal;
+                       if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+                     }
+                   }
+                 });
   const double density = static_cast<double>(n) / area;
   return {std::move(points), area, density, sampling_floor(density)};
 }
@@ -23244,10 +23472,11 @@ inline mesh_samples poisson_samples(const aib::mesh::mesh& surface, const mesh_o
   const cloud::cloud all = std::move(samples.points);
   samples.points =
       options.spacing
-          ? thin(all, {.spacing = *options.spacing, .seed = options.seed})
-          : eliminate(all, {.n = all.size() / 5, .area = samples.area, .threads = options.threads});
+          ? thin(all, {*options.spacing, options.seed, options.control})
+          : eliminate(all, {all.size() / 5, samples.area, options.threads, options.control});
   samples.density = static_cast<double>(samples.points.size()) / samples.area;
-  const cloud::distances apart(all, samples.points, {.threads = options.threads});
+  const cloud::distances apart(all, samples.points,
+                               {.threads = options.threads, .control = options.control});
   // The kept points are candidates too, at distance 0.
   samples.floor = apart.mean() * static_cast<double>(all.size()) /
                   static_cast<double>(all.size() - std::min(all.size() - 1, samples.points.size()));
@@ -23289,6 +23518,7 @@ struct unproject_options {
   depth_meaning meaning = depth_meaning::planar;
   raster::view<const raster::rgb> colors = {};  ///< none, or of the size of the map
   unsigned threads = 0;                         ///< 0: all
+  aib::control control = {};
 };
 
 /// Points of a depth map, and what became of its pixels.
@@ -23440,7 +23670,8 @@ inline unprojected unproject(const depth::depth_map& map,
     for (std::size_t i = c.begin; i < c.end; ++i) rows.add_row(i * options.stride, part);
     return part;
   };
-  return reduce_chunks(n_rows, 32, options.threads, {}, nothing, points_of, detail::append);
+  return reduce_chunks(n_rows, 32, options.threads, options.control, nothing, points_of,
+                       detail::append);
 }
 
 }  // namespace aib::sample
@@ -23475,6 +23706,7 @@ namespace aib::sample {
   unprojected made{};
   made.points.origin = cloud::natural_origin(centre, centre);
   for (std::size_t y = 0; y < height; y += options.stride) {
+    demand_go(options.control);
     for (std::size_t x = 0; x < width; x += options.stride) {
       const float* at = xyz.data() + 3 * (y * width + x);
       const Eigen::Vector3d p_in_camera = Eigen::Map<const Eigen::Vector3f>(at).cast<double>();
@@ -23493,7 +23725,7 @@ namespace aib::sample {
 
 }  // namespace aib::sample
 
-// aib/sample/voxel.hpp
+// aib/sample/voxel_lattice.hpp
 
 namespace aib::sample {
 
@@ -23502,6 +23734,159 @@ enum class voxel_anchor {
   world,   ///< at the origin of the world: one more point moves no other
   open3d,  ///< half a voxel below the cloud's own corner, as Open3D's voxel_down_sample
 };
+
+namespace detail {
+
+/// The lattice: which cell a point lies in, counted from the lowest cell of the cloud. Calculated
+/// in double.
+class voxel_lattice {
+ public:
+  using cell = std::array<std::uint64_t, 3>;
+
+  voxel_lattice(const cloud::cloud& points, double size, voxel_anchor anchor)
+      : points_(points), size_(size) {
+    if (!(size > 0 && std::isfinite(size))) {
+      throw argument_error(message("sample::voxel: size > 0 expected, found ", size));
+    }
+    const cloud::box box = cloud::bounds(points);
+    if (anchor == voxel_anchor::open3d) anchor_ = box.low.array() - size * 0.5;
+    if (box.empty()) return;
+    first_ = place_of(box.low);
+    const Eigen::Vector3d last = place_of(box.high);
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(first_[k]) < 0x1p52 && std::abs(last[k]) < 0x1p52 &&
+            last[k] - first_[k] < 0x1p31)) {
+        throw argument_error(
+            message("sample::voxel: size ", size, " is too small for a cloud of ", box.size()[k]));
+      }
+      const auto cells = static_cast<std::uint64_t>(last[k] - first_[k]) + 1;
+      bits_[static_cast<std::size_t>(k)] = static_cast<int>(std::bit_width(cells));
+    }
+  }
+
+  /// Bits that hold a coordinate of a cell, and one number that is none: all of them set.
+  [[nodiscard]] int bits(std::size_t axis) const { return bits_[axis]; }
+
+  /// x, y and z of the cell of point i; all bits set where the point is not finite.
+  [[nodiscard]] cell cell_of(std::size_t i) const {
+    if (!cloud::is_finite(points_.points[i])) return none();
+    const Eigen::Vector3d c = place_of(points_.position(i)) - first_;
+    return {static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
+            static_cast<std::uint64_t>(c.z())};
+  }
+  [[nodiscard]] cell none() const { return {ones(bits_[0]), ones(bits_[1]), ones(bits_[2])}; }
+
+  /// Centre of the cell of point i.
+  [[nodiscard]] Eigen::Vector3d centre(std::size_t i) const {
+    return anchor_.array() + (place_of(points_.position(i)).array() + 0.5) * size_;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d place_of(const Eigen::Vector3d& p) const {
+    return ((p - anchor_) / size_).array().floor();
+  }
+  [[nodiscard]] static std::uint64_t ones(int bits) { return (std::uint64_t{1} << bits) - 1; }
+
+  const cloud::cloud& points_;
+  double size_;
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  std::array<int, 3> bits_{1, 1, 1};
+};
+
+/// The finite points of a cloud, voxel by voxel in the order of the lattice (z, then y, then x);
+/// those of a voxel in their own order.
+class points_by_voxel {
+ public:
+  points_by_voxel(const cloud::cloud& points,
+                  const voxel_lattice& lattice,
+                  unsigned threads,
+                  const control& control);
+
+  [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }  ///< of voxels
+  [[nodiscard]] std::size_t n_points() const { return starts_.back(); }
+
+  /// Indices of the points of a voxel.
+  [[nodiscard]] std::span<const std::uint64_t> operator[](std::size_t voxel) const {
+    return index_.span().subspan(starts_[voxel], starts_[voxel + 1] - starts_[voxel]);
+  }
+
+ private:
+  static constexpr std::size_t chunk_size = std::size_t{1} << 16;
+
+  template <class IsFirst>
+  void find_starts(IsFirst&& is_first, unsigned threads, const control& control);
+
+  search::buffer<std::uint64_t> index_;
+  std::vector<std::size_t> starts_;
+};
+
+/// A cell and a point's index share a word, and one sort does, where both fit 64 bits; else the
+/// axes are sorted one by one, the least important first, which is stable.
+inline points_by_voxel::points_by_voxel(const cloud::cloud& points,
+                                        const voxel_lattice& lattice,
+                                        unsigned threads,
+                                        const control& control)
+    : index_(points.size()) {
+  const int index_bits = std::max(1, static_cast<int>(std::bit_width(points.size())));
+  const std::uint64_t mask = (std::uint64_t{1} << index_bits) - 1;
+  const int cell_bits = lattice.bits(0) + lattice.bits(1) + lattice.bits(2);
+  const std::size_t axes = index_bits + cell_bits <= 64 ? 3 : 1;  // that share a word
+  for (std::size_t axis = 0; axis < 3; axis += axes) {
+    int key_bits = 0;
+    for (std::size_t k = axis; k < axis + axes; ++k) key_bits += lattice.bits(k);
+    for_each_chunk(points.size(), chunk_size, threads, control, [&](const chunk& c) {
+      for (std::size_t w = c.begin; w < c.end; ++w) {
+        const std::uint64_t i = axis == 0 ? w : index_[w] & mask;
+        const voxel_lattice::cell cell = lattice.cell_of(i);
+        std::uint64_t key = 0;
+        for (std::size_t k = axis + axes; k-- > axis;) key = key << lattice.bits(k) | cell[k];
+        index_[w] = key << index_bits | i;
+      }
+    });
+    search::radix_sort(index_, {index_bits, index_bits + key_bits}, threads, control);
+  }
+  const auto cell_at = [&](std::size_t w) { return lattice.cell_of(index_[w] & mask); };
+  if (axes == 3) {
+    find_starts([&](std::size_t w) { return (index_[w] ^ index_[w - 1]) >> index_bits != 0; },
+                threads, control);
+  } else {
+    find_starts([&](std::size_t w) { return cell_at(w) != cell_at(w - 1); }, threads, control);
+  }
+  if (size() > 0 && cell_at(starts_[size() - 1]) == lattice.none()) starts_.pop_back();
+  for_each_chunk(points.size(), chunk_size, threads, control, [&](const chunk& c) {
+    for (std::size_t w = c.begin; w < c.end; ++w) index_[w] &= mask;
+  });
+}
+
+/// `is_first(w)`: whether the point at place w > 0 has another cell than the one before.
+template <class IsFirst>
+void points_by_voxel::find_starts(IsFirst&& is_first, unsigned threads, const control& control) {
+  const std::size_t n = index_.size();
+  std::vector<std::size_t> next((n + chunk_size - 1) / chunk_size + 1, 0);
+  for_each_chunk(n, chunk_size, threads, control, [&](const chunk& c) {
+    std::size_t count = 0;
+    for (std::size_t w = c.begin; w < c.end; ++w) count += w == 0 || is_first(w) ? 1 : 0;
+    next[c.index + 1] = count;
+  });
+  for (std::size_t c = 1; c < next.size(); ++c) next[c] += next[c - 1];
+  starts_.resize(next.back() + 1);
+  for_each_chunk(n, chunk_size, threads, control, [&](const chunk& c) {
+    std::size_t* start = starts_.data() + next[c.index];
+    for (std::size_t w = c.begin; w < c.end; ++w) {
+      if (w == 0 || is_first(w)) *start++ = w;
+    }
+  });
+  starts_.back() = n;
+}
+
+}  // namespace detail
+
+}  // namespace aib::sample
+
+// aib/sample/voxel.hpp
+
+namespace aib::sample {
 
 /// The one point that stands for a voxel.
 enum class voxel_pick {
@@ -23515,6 +23900,7 @@ struct voxel_options {
   voxel_anchor anchor = voxel_anchor::world;
   voxel_pick pick = voxel_pick::mean;
   unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 /// One point for each voxel that has any, in the order of the lattice. Normal, colour and label are
@@ -23525,98 +23911,6 @@ struct voxel_options {
 [[nodiscard]] cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options);
 
 namespace detail {
-
-/// The lattice: which cell a point lies in, counted from the lowest cell of the cloud.
-class voxel_lattice {
- public:
-  voxel_lattice(const cloud::cloud& points, const voxel_options& options)
-      : points_(points), size_(options.size) {
-    if (!(options.size > 0 && std::isfinite(options.size))) {
-      throw argument_error(message("sample::voxel: size > 0 expected, found ", options.size));
-    }
-    const cloud::box box = cloud::bounds(points);
-    anchor_.setZero();
-    if (options.anchor == voxel_anchor::open3d) anchor_ = box.low.array() - size_ * 0.5;
-    if (box.empty()) return;
-    const Eigen::Vector3d low = cell_of(box.low), high = cell_of(box.high);
-    first_ = low;
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(low[k]) < 0x1p52 && std::abs(high[k]) < 0x1p52 && high[k] - low[k] < 0x1p31)) {
-        throw argument_error(
-            message("sample::voxel: size ", size_, " is too small for a cloud of ", box.size()[k]));
-      }
-      const auto cells = static_cast<std::uint64_t>(high[k] - low[k]) + 1;
-      bits_[static_cast<std::size_t>(k)] = static_cast<int>(std::bit_width(cells));
-    }
-  }
-
-  /// Bits that the cells take on an axis.
-  [[nodiscard]] int bits(std::size_t axis) const { return bits_[axis]; }
-
-  [[nodiscard]] std::array<std::uint64_t, 3> cell(std::size_t i) const {
-    const Eigen::Vector3d c = cell_of(points_.position(i)) - first_;
-    return {static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
-            static_cast<std::uint64_t>(c.z())};
-  }
-
-  /// Centre of the cell of point i.
-  [[nodiscard]] Eigen::Vector3d centre(std::size_t i) const {
-    const Eigen::Vector3d c = cell_of(points_.position(i));
-    return anchor_.array() + (c.array() + 0.5) * size_;
-  }
-
- private:
-  [[nodiscard]] Eigen::Vector3d cell_of(const Eigen::Vector3d& p) const {
-    return ((p - anchor_) / size_).array().floor();
-  }
-
-  const cloud::cloud& points_;
-  double size_;
-  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
-  std::array<int, 3> bits_{};
-};
-
-/// Finite points sorted by their cell (z, then y, then x), then index: one radix sort an axis, the
-/// least important axis first, each stable.
-inline search::buffer<std::uint64_t> sort_by_cell(const cloud::cloud& points,
-                                                  const voxel_lattice& lattice,
-                                                  unsigned threads) {
-  const int index_bits = std::max(1, static_cast<int>(std::bit_width(points.size())));
-  const std::uint64_t mask = (std::uint64_t{1} << index_bits) - 1;
-  std::vector<std::uint64_t> finite;
-  finite.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (cloud::is_finite(points.points[i])) finite.push_back(i);
-  }
-  search::buffer<std::uint64_t> words(finite.size());
-  std::copy(finite.begin(), finite.end(), words.data());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for_each_chunk(words.size(), 1 << 16, threads, {}, [&](const chunk& c) {
-      for (std::size_t w = c.begin; w < c.end; ++w) {
-        const std::uint64_t i = words[w] & mask;
-        words[w] = lattice.cell(i)[axis] << index_bits | i;
-      }
-    });
-    search::radix_sort(words, {index_bits, index_bits + lattice.bits(axis)}, threads);
-  }
-  for (std::size_t w = 0; w < words.size(); ++w) words[w] &= mask;
-  return words;
-}
-
-/// Where each voxel's points begin in the sorted list, and at the end its length.
-inline std::vector<std::size_t> voxel_starts(const search::buffer<std::uint64_t>& sorted,
-                                             const voxel_lattice& lattice) {
-  std::vector<std::size_t> starts;
-  std::array<std::uint64_t, 3> last{};
-  for (std::size_t w = 0; w < sorted.size(); ++w) {
-    const auto cell = lattice.cell(sorted[w]);
-    if (w == 0 || cell != last) starts.push_back(w);
-    last = cell;
-  }
-  starts.push_back(sorted.size());
-  return starts;
-}
 
 /// Index of the point nearest to a position, the first among equals.
 inline std::size_t nearest_of(const cloud::cloud& points,
@@ -23638,24 +23932,24 @@ inline Eigen::Vector3d mean_of(const cloud::cloud& points, std::span<const std::
 
 inline cloud::cloud voxel(const cloud::cloud& points, const voxel_options& options) {
   const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
-  const detail::voxel_lattice lattice(points, options);
-  const auto sorted = detail::sort_by_cell(points, lattice, threads);
-  const auto starts = detail::voxel_starts(sorted, lattice);
-  const std::size_t n = starts.size() - 1;
-  std::vector<std::size_t> source(n);
-  std::vector<Eigen::Vector3d> position(n);
-  for_each_chunk(n, 4096, threads, {}, [&](const chunk& c) {
+  const detail::voxel_lattice lattice(points, options.size, options.anchor);
+  const detail::points_by_voxel voxels(points, lattice, threads, options.control);
+  const bool centre = options.pick == voxel_pick::centre;
+  const bool nearest = options.pick == voxel_pick::nearest;
+  const bool bare = points.normals.empty() && points.colors.empty() && points.labels.empty();
+  std::vector<std::size_t> source(nearest || !bare ? voxels.size() : 0);
+  std::vector<Eigen::Vector3d> position(voxels.size());
+  for_each_chunk(voxels.size(), 4096, threads, options.control, [&](const chunk& c) {
     for (std::size_t v = c.begin; v < c.end; ++v) {
-      const auto members = sorted.span().subspan(starts[v], starts[v + 1] - starts[v]);
-      const bool centre = options.pick == voxel_pick::centre;
+      const auto members = voxels[v];
       position[v] = centre ? lattice.centre(members.front()) : detail::mean_of(points, members);
-      source[v] = detail::nearest_of(points, members, position[v]);
+      if (!source.empty()) source[v] = detail::nearest_of(points, members, position[v]);
     }
   });
   cloud::cloud picked = cloud::select(points, source);
-  if (options.pick == voxel_pick::nearest) return picked;
-  cloud::placed_points placed =
-      cloud::place(n, [&](std::size_t v) -> const Eigen::Vector3d& { return position[v]; });
+  if (nearest) return picked;
+  cloud::placed_points placed = cloud::place(
+      voxels.size(), [&](std::size_t v) -> const Eigen::Vector3d& { return position[v]; });
   picked.origin = placed.origin;
   picked.points = std::move(placed.points);
   return picked;
@@ -23674,7 +23968,7 @@ namespace aib::sample {
 /// left out. Lattice at the origin of the world.
 class voxel_grid {
  public:
-  /// Only size and threads of the options are used. Throws argument_error if size is not positive.
+  /// Only size, threads and control of the options are used. Throws argument_error if size is not positive.
   explicit voxel_grid(const voxel_options& options);
 
   /// Points that are not finite are left out. The same for any number of threads. Throws
@@ -23720,7 +24014,7 @@ class voxel_grid {
 };
 
 inline voxel_grid::voxel_grid(const voxel_options& options)
-    : options_{.size = options.size, .threads = options.threads} {
+    : options_{.size = options.size, .threads = options.threads, .control = options.control} {
   if (!(options.size > 0 && std::isfinite(options.size)))
     throw argument_error(message("sample::voxel_grid: size > 0 expected, found ", options.size));
   if (options_.threads == 0) options_.threads = available_threads();
@@ -23761,18 +24055,15 @@ inline voxel_grid::sums voxel_grid::sum_of(const cloud::cloud& points,
 
 inline void voxel_grid::add(const cloud::cloud& points) {
   if (points.size() == 0) return;
-  const detail::voxel_lattice lattice(points, options_);
-  const auto sorted = detail::sort_by_cell(points, lattice, options_.threads);
-  const auto starts = detail::voxel_starts(sorted, lattice);
-  const std::size_t n = starts.size() - 1;
-  std::vector<sums> parts(n);
-  for_each_chunk(n, 4096, options_.threads, {}, [&](const chunk& c) {
-    for (std::size_t v = c.begin; v < c.end; ++v)
-      parts[v] = sum_of(points, sorted.span().subspan(starts[v], starts[v + 1] - starts[v]));
+  const detail::voxel_lattice lattice(points, options_.size, options_.anchor);
+  const detail::points_by_voxel voxels(points, lattice, options_.threads, options_.control);
+  std::vector<sums> parts(voxels.size());
+  for_each_chunk(voxels.size(), 4096, options_.threads, options_.control, [&](const chunk& c) {
+    for (std::size_t v = c.begin; v < c.end; ++v) parts[v] = sum_of(points, voxels[v]);
   });
-  for (std::size_t v = 0; v < n; ++v)
-    voxels_[cell_of(points.position(sorted[starts[v]]))] += parts[v];
-  n_points_ += sorted.size();
+  for (std::size_t v = 0; v < voxels.size(); ++v)
+    voxels_[cell_of(points.position(voxels[v].front()))] += parts[v];
+  n_points_ += voxels.n_points();
   has_colors_ = has_colors_ && !points.colors.empty();
 }
 
@@ -23809,6 +24100,7 @@ struct bootstrap_options {
   std::size_t resamples = 2000;
   double level = 0.95;  ///< share of the resampled means inside the interval
   std::uint64_t seed = 1;
+  aib::control control = {};
 };
 
 /// A mean and how far it may be off.
@@ -23840,6 +24132,7 @@ struct interval {
   random_engine random(options.seed);
   std::vector<double> means(options.resamples);
   for (double& mean : means) {
+    demand_go(options.control);
     moments sample;
     while (sample.count() < n) {
       const std::size_t first = random.below(n);
@@ -23998,7 +24291,7 @@ requires(std::is_trivially_copyable_v<T>) class spill {
   }
 
   [[noreturn]] void fail(const char* what) const {
-    throw io_error(folder_, message(what, ": ", std::strerror(errno)));
+    throw output_error(folder_, message(what, ": ", std::strerror(errno)));
   }
 
   std::filesystem::path folder_;
@@ -24137,10 +24430,6 @@ struct cloud_file {
 };
 
 namespace detail {
-
-inline void demand_go(const control& control) {
-  if (control.stop.stop_requested()) throw stopped_error("stopped");
-}
 
 /// Calls `visit(index, position)` for each point of a file.
 template <class Visit>
@@ -24411,7 +24700,7 @@ inline stored_distances in_file_order(tiled_cloud& queries,
   stored_distances stored(options.folder, how);
   std::vector<std::uint16_t> tile_of;
   for (std::uint64_t i = 0; i < queries.tile_of.size(); i += tile_of.size()) {
-    detail::demand_go(options.compare.control);
+    demand_go(options.compare.control);
     tile_of.resize(static_cast<std::size_t>(
         std::min<std::uint64_t>(queries.tile_of.size() - i, cloud::detail::value_chunk)));
     queries.tile_of.read(i, tile_of);
@@ -24527,6 +24816,7 @@ struct sensor_noise_options {
   std::uint64_t frame = 0;  ///< frames differ by it, whatever their order
   survey::transfer transfer = transfer::srgb;
   unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 /// Light of an sRGB number, both in 0..1.
@@ -24616,7 +24906,7 @@ raster::image<Pixel> sensor_noise(raster::view<const Pixel> image,
   }
   raster::image<Pixel> noisy(image.width, image.height);
   const std::uint64_t of_frame = random_bits(options.seed, options.frame);
-  for_each_chunk(image.height, 16, options.threads, {}, [&](const chunk& c) {
+  for_each_chunk(image.height, 16, options.threads, options.control, [&](const chunk& c) {
     for (std::size_t y = c.begin; y < c.end; ++y) {
       for (std::size_t x = 0; x < image.width; ++x) {
         random_engine random(random_bits(of_frame, y * image.width + x));
@@ -24864,6 +25154,18 @@ struct leg {
   [[nodiscard]] double length() const {
     return std::hypot(angle * (arm - axis.dot(arm) * axis).norm(), shift.norm());
   }
+  /// The part between two shares.
+  [[nodiscard]] leg part(double from, double to) const {
+    const double share = to - from;
+    const Eigen::Vector3d swing = from * angle * axis;
+    return {centre + from * shift,
+            math::rotation_from(swing) * arm,
+            axis,
+            share * angle,
+            share * shift,
+            at(from).rotation,
+            share * turn};
+  }
   [[nodiscard]] leg reversed() const {
     const math::rigid3 end = at(1);
     const Eigen::Vector3d swing = angle * axis;
@@ -24995,7 +25297,7 @@ struct row_places {
 
 namespace aib::survey {
 
-/// The ground plan of a building: a convex polygon, anticlockwise from above, and its heights.
+/// The ground plan of a building: a simple polygon, anticlockwise from above, and its heights.
 struct footprint {
   std::vector<Eigen::Vector2d> corners;
   double low = 0, high = 0;
@@ -25073,24 +25375,214 @@ struct footprint {
   return f;
 }
 
+/// Whether the lines from a to b and from c to d have a point in common.
+[[nodiscard]] inline bool do_meet(const Eigen::Vector2d& a,
+                                  const Eigen::Vector2d& b,
+                                  const Eigen::Vector2d& c,
+                                  const Eigen::Vector2d& d) {
+  const Eigen::Array2d low = a.cwiseMin(b), high = a.cwiseMax(b);
+  if ((c.cwiseMin(d).array() > high).any() || (c.cwiseMax(d).array() < low).any()) return false;
+  return turn_of(a, b, c) * turn_of(a, b, d) <= 0 && turn_of(c, d, a) * turn_of(c, d, b) <= 0;
+}
+
 /// The corners anticlockwise. Throws argument_error unless they are three or more that make a
-/// convex polygon.
+/// simple polygon: no edge without a length, none that crosses or touches another.
 [[nodiscard]] inline std::vector<Eigen::Vector2d> anticlockwise(
     std::vector<Eigen::Vector2d> corners) {
   const std::size_t n = corners.size();
   double area = 0;
-  for (std::size_t i = 0; i < n; ++i) area += turn_of({0, 0}, corners[i], corners[(i + 1) % n]);
+  for (std::size_t i = 1; i + 1 < n; ++i) area += turn_of(corners[0], corners[i], corners[i + 1]);
   if (n < 3 || !(std::abs(area) > 0) || !std::isfinite(area))
     throw argument_error("survey: a footprint of three corners or more and an area expected");
-  if (area < 0) std::reverse(corners.begin(), corners.end());
   for (std::size_t i = 0; i < n; ++i) {
-    if (turn_of(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]) < 0) {
-      throw argument_error(message("survey: the footprint turns inwards at (",
-                                   corners[(i + 1) % n].x(), ", ", corners[(i + 1) % n].y(),
-                                   "): a convex one expected, or a path of your own"));
+    const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
+    const auto refuse = [&](const char* what) {
+      throw argument_error(message("survey: the footprint's edge from corner ", i + 1, " (", a.x(),
+                                   ", ", a.y(), ") ", what));
+    };
+    if (a == b) refuse("has no length");
+    if (turn_of(a, b, c) == 0 && (b - a).dot(c - b) < 0) refuse("goes back on the next one");
+    for (std::size_t k = i + 2; k < n - (i == 0 ? 1 : 0); ++k)
+      if (do_meet(a, b, corners[k], corners[(k + 1) % n])) refuse("meets another one");
+  }
+  if (area < 0) std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
+}  // namespace aib::survey
+
+// aib/survey/outline.hpp
+
+namespace aib::survey {
+
+/// A piece of the way round a footprint, at height 0.
+struct outline_piece {
+  leg way;
+  std::size_t source;  ///< 2 i: along edge i, 2 i + 1: round the corner behind it
+};
+
+/// The way round a footprint at a stand-off, anticlockwise: along its edges and in arcs round the
+/// corners that stick out, nowhere nearer to an edge. Where the footprint turns inwards, pieces end
+/// where they meet. An opening narrower than twice the stand-off is passed by.
+///
+/// corners   of a simple polygon, anticlockwise
+/// pitch     of the views, which are along the inward normals, radians, positive looks down
+///
+/// Throws argument_error where corners lie so near to each other that rounding hides the way.
+[[nodiscard]] std::vector<outline_piece> outline(const std::vector<Eigen::Vector2d>& corners,
+                                                 double stand_off,
+                                                 double pitch = 0);
+
+namespace detail {
+
+/// Unit vector along an edge, level.
+inline Eigen::Vector3d along_edge(const std::vector<Eigen::Vector2d>& corners, std::size_t i) {
+  const Eigen::Vector2d d = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
+  return {d.x(), d.y(), 0};
+}
+
+/// The pieces beside all edges and round all corners that stick out, whatever lies in their way.
+inline std::vector<outline_piece> pieces_beside(const std::vector<Eigen::Vector2d>& corners,
+                                                double stand_off,
+                                                double pitch) {
+  const std::size_t n = corners.size();
+  std::vector<outline_piece> pieces;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d along = along_edge(corners, i);
+    const Eigen::Vector3d inwards(-along.y(), along.x(), 0);
+    const Eigen::Matrix3d attitude =
+        looking(std::cos(pitch) * inwards - std::sin(pitch) * Eigen::Vector3d::UnitZ());
+    const auto beside = [&](const Eigen::Vector2d& c) -> Eigen::Vector3d {
+      return Eigen::Vector3d(c.x(), c.y(), 0) - stand_off * inwards;
+    };
+    const Eigen::Vector2d& corner = corners[(i + 1) % n];
+    const math::rigid3 end{attitude, beside(corner)};
+    pieces.push_back({line({attitude, beside(corners[i])}, end), 2 * i});
+    const Eigen::Vector3d next = along_edge(corners, (i + 1) % n);
+    const double angle = std::atan2(along.cross(next).z(), along.dot(next));
+    if (angle > 1e-12) {
+      const Eigen::Vector3d centre(corner.x(), corner.y(), 0);
+      pieces.push_back({arc(end, centre, Eigen::Vector3d::UnitZ(), angle), 2 * i + 1});
     }
   }
-  return corners;
+  return pieces;
+}
+
+/// Points of a level line on a circle, none or two.
+inline std::vector<Eigen::Vector3d> points_on_circle(const leg& straight, const leg& round) {
+  const Eigen::Vector3d along = straight.shift.normalized();
+  const Eigen::Vector3d foot = straight.centre + along.dot(round.centre - straight.centre) * along;
+  const double left = round.arm.squaredNorm() - (foot - round.centre).squaredNorm();
+  if (!(left >= 0)) return {};
+  return {foot - std::sqrt(left) * along, foot + std::sqrt(left) * along};
+}
+
+/// Points where the lines and circles of two level legs meet; none where they are the same.
+inline std::vector<Eigen::Vector3d> meeting_points(const leg& a, const leg& b) {
+  const bool a_is_round = a.angle != 0, b_is_round = b.angle != 0;
+  if (a_is_round && b_is_round) {
+    const Eigen::Vector3d way = b.centre - a.centre;
+    const leg between{.centre = (a.centre + b.centre) / 2, .shift = {-way.y(), way.x(), 0}};
+    return way.norm() > 0 ? points_on_circle(between, a) : std::vector<Eigen::Vector3d>();
+  }
+  if (a_is_round) return points_on_circle(b, a);
+  if (b_is_round) return points_on_circle(a, b);
+  const double sine = a.shift.cross(b.shift).z();
+  if (!(std::abs(sine) > 1e-12 * a.shift.norm() * b.shift.norm())) return {};
+  const Eigen::Vector3d way = b.centre - a.centre;
+  return {a.centre + way.cross(b.shift).z() / sine * a.shift};
+}
+
+/// Share of a level leg at a point of its line or circle.
+inline double share_at(const leg& l, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d way = p - l.centre;
+  if (l.angle == 0) return l.shift.dot(way) / l.shift.squaredNorm();
+  return std::atan2(l.axis.dot(l.arm.cross(way)), l.arm.dot(way)) / l.angle;
+}
+
+/// A piece cut where it meets others, in order.
+inline std::vector<outline_piece> cut(const std::vector<outline_piece>& all, std::size_t which) {
+  constexpr double least = 1e-9;
+  const std::size_t n = all.size();
+  const leg& whole = all[which].way;
+  std::vector<double> shares;
+  for (std::size_t other = 0; other < n; ++other) {
+    const bool is_next = (other + 1) % n == which || (which + 1) % n == other;
+    const bool goes_over = is_next && (whole.angle != 0) != (all[other].way.angle != 0);
+    if (other == which || goes_over) continue;
+    for (const Eigen::Vector3d& p : meeting_points(whole, all[other].way)) {
+      const double mine = share_at(whole, p), theirs = share_at(all[other].way, p);
+      if (mine > least && mine < 1 - least && theirs > -least && theirs < 1 + least)
+        shares.push_back(mine);
+    }
+  }
+  if (shares.empty()) return {all[which]};
+  shares.insert(shares.end(), {0, 1});
+  std::sort(shares.begin(), shares.end());
+  std::vector<outline_piece> parts;
+  for (std::size_t i = 1; i < shares.size(); ++i)
+    parts.push_back({whole.part(shares[i - 1], shares[i]), all[which].source});
+  return parts;
+}
+
+inline double distance_to_edges(const Eigen::Vector2d& p,
+                                const std::vector<Eigen::Vector2d>& corners) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
+    const Eigen::Vector2d way = p - corners[i];
+    const double share = std::clamp(edge.dot(way) / edge.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (way - share * edge).norm());
+  }
+  return least;
+}
+
+/// Pieces one behind the other, from `first` until they come round.
+inline std::vector<outline_piece> loop_from(std::vector<outline_piece>::const_iterator first,
+                                            std::vector<outline_piece> pieces,
+                                            double tolerance) {
+  std::vector<outline_piece> loop{*first};
+  const auto begin = [](const outline_piece& p) { return p.way.at(0).translation; };
+  for (;;) {
+    const Eigen::Vector3d end = loop.back().way.at(1).translation;
+    const auto next = std::find_if(pieces.begin(), pieces.end(), [&](const outline_piece& p) {
+      return (begin(p) - end).norm() <= tolerance;
+    });
+    if (next == pieces.end())
+      throw argument_error("survey::outline: corners too near to each other to find a way round");
+    if (begin(*next) == begin(loop.front())) return loop;
+    loop.push_back(*next);
+    pieces.erase(next);
+  }
+}
+
+}  // namespace detail
+
+inline std::vector<outline_piece> outline(const std::vector<Eigen::Vector2d>& corners,
+                                          double stand_off,
+                                          double pitch) {
+  const auto all = detail::pieces_beside(corners, stand_off, pitch);
+  double size = stand_off;
+  for (const Eigen::Vector2d& c : corners) size = std::max(size, c.cwiseAbs().maxCoeff());
+  const double rounding = 1e-9 * size;
+  std::vector<outline_piece> free;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const outline_piece& part : detail::cut(all, i)) {
+      const Eigen::Vector3d middle = part.way.at(0.5).translation;
+      const double distance = detail::distance_to_edges(middle.head<2>(), corners);
+      if (part.way.length() > rounding && distance >= stand_off - rounding) free.push_back(part);
+    }
+  }
+  // Pockets behind narrow openings have loops of their own; that round all reaches farthest.
+  const auto leftmost =
+      std::min_element(free.begin(), free.end(), [](const auto& a, const auto& b) {
+        return a.way.at(0).translation.x() < b.way.at(0).translation.x();
+      });
+  auto loop = detail::loop_from(leftmost, free, 100 * rounding);
+  const auto lowest = std::min_element(
+      loop.begin(), loop.end(), [](const auto& a, const auto& b) { return a.source < b.source; });
+  std::rotate(loop.begin(), lowest, loop.end());
+  return loop;
 }
 
 }  // namespace aib::survey
@@ -25112,48 +25604,72 @@ struct facade_options {
 
 /// Rows round a building, flown to and fro from the lowest up (a serpentine): along the walls at
 /// the stand-off, in arcs round the corners, looking along the inward normal, which turns without a
-/// jump. The frames of the rows cover the footprint's heights.
+/// jump. Into an inner corner the camera turns on its way, half of it before, half behind. The
+/// frames of the rows cover the footprint's heights.
 ///
-/// Throws argument_error where the footprint is not convex or an option is out of its range.
+/// No place is nearer to a wall than the stand-off: an opening narrower than twice of it is passed
+/// by. Throws argument_error where the footprint is no simple polygon, sides are not to be reached,
+/// or an option is out of its range.
 [[nodiscard]] flight_path facade(const footprint& plan, const facade_options& options);
 
 namespace detail {
 
-/// Unit vector along an edge, level.
-inline Eigen::Vector3d along_edge(const std::vector<Eigen::Vector2d>& corners, std::size_t i) {
-  const Eigen::Vector2d d = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
-  return {d.x(), d.y(), 0};
+/// The pieces of an outline beside the sides, from the first of them to the last.
+inline std::vector<leg> beside(const std::vector<outline_piece>& around,
+                               const side_range& sides,
+                               std::size_t n) {
+  const std::size_t last = 2 * ((sides.last + n - sides.first) % n);
+  const bool is_all = last + 2 == 2 * n;
+  const auto place = [&](const outline_piece& p) {
+    return (p.source + 2 * (n - sides.first)) % (2 * n);
+  };
+  std::vector<outline_piece> ordered = around;
+  const auto first =
+      std::min_element(ordered.begin(), ordered.end(),
+                       [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  std::rotate(ordered.begin(), first, ordered.end());
+  while (!is_all && !ordered.empty() && place(ordered.back()) > last) ordered.pop_back();
+  std::vector<leg> legs;
+  for (const outline_piece& p : ordered) legs.push_back(p.way);
+  return legs;
 }
 
-/// One row at height 0, the way round.
-inline std::vector<leg> ring(const std::vector<Eigen::Vector2d>& corners,
-                             const side_range& sides,
-                             const path_options& options) {
-  const std::size_t n = corners.size();
-  const std::size_t n_sides = (sides.last + n - sides.first) % n + 1;
-  std::vector<leg> legs;
-  for (std::size_t k = 0; k < n_sides; ++k) {
-    const std::size_t i = (sides.first + k) % n;
-    const Eigen::Vector3d along = along_edge(corners, i);
-    const Eigen::Vector3d inwards(-along.y(), along.x(), 0);
-    const Eigen::Vector3d view =
-        std::cos(options.pitch) * inwards - std::sin(options.pitch) * Eigen::Vector3d::UnitZ();
-    const auto beside = [&](std::size_t corner) -> Eigen::Vector3d {
-      const Eigen::Vector2d& c = corners[corner % n];
-      return Eigen::Vector3d(c.x(), c.y(), 0) - options.stand_off * inwards;
-    };
-    const Eigen::Matrix3d attitude = looking(view);
-    legs.push_back(line({attitude, beside(i)}, {attitude, beside(i + 1)}));
-    const bool last = k + 1 == n_sides;
-    if (last && n_sides < n) continue;
-    const Eigen::Vector3d next = along_edge(corners, (i + 1) % n);
-    const double angle = std::atan2(along.cross(next).z(), along.dot(next));
-    const Eigen::Vector2d& c = corners[(i + 1) % n];
-    if (angle > 1e-12)
-      legs.push_back(
-          arc({attitude, beside(i + 1)}, {c.x(), c.y(), 0}, Eigen::Vector3d::UnitZ(), angle));
+/// The leg with other attitudes at its ends, between which the camera turns evenly.
+inline leg turning(leg way, const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
+  way.attitude = from;
+  way.turn = math::axis_angle_from(to * from.transpose());
+  return way;
+}
+
+/// Legs whose views meet: where one ends otherwise than the next begins, both turn to the middle
+/// over a reach, at most over half of their length.
+inline std::vector<leg> without_jumps(const std::vector<leg>& legs, double reach, bool is_closed) {
+  constexpr double least = 1e-6;
+  const std::size_t n = legs.size();
+  const auto half_jump = [&](std::size_t i) -> Eigen::Vector3d {  // behind leg i
+    if (i + 1 == n && !is_closed) return Eigen::Vector3d::Zero();
+    const Eigen::Matrix3d end = legs[i].at(1).rotation, begin = legs[(i + 1) % n].attitude;
+    return math::axis_angle_from(begin * end.transpose()) / 2;
+  };
+  std::vector<leg> smooth;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d before = -half_jump((i + n - 1) % n), behind = half_jump(i);
+    const double share = std::min(0.5, reach / legs[i].length());
+    const double from = before.norm() > least ? share : 0;
+    const double to = behind.norm() > least ? 1 - share : 1;
+    if (from > 0) {
+      const leg part = legs[i].part(0, from);
+      smooth.push_back(
+          turning(part, math::rotation_from(before) * part.attitude, part.at(1).rotation));
+    }
+    if (to > from) smooth.push_back(legs[i].part(from, to));
+    if (to < 1) {
+      const leg part = legs[i].part(to, 1);
+      smooth.push_back(
+          turning(part, part.attitude, math::rotation_from(behind) * part.at(1).rotation));
+    }
   }
-  return legs;
+  return smooth;
 }
 
 /// Rows of a flight at heights, each the other way than the one before.
@@ -25189,11 +25705,47 @@ inline flight_path facade(const footprint& plan, const facade_options& options) 
   flight_path row{.camera = options.path.camera,
                   .stand_off = options.path.stand_off,
                   .is_closed = (sides.last + 1) % n == sides.first};
-  row.legs = detail::ring(corners, sides, options.path);
-  const double height = frame_on_wall(row.camera, row.stand_off).height;
-  return detail::serpentine(row,
-                            place_rows(plan.low, plan.high, height, options.path.overlap_across),
-                            row.stand_off * std::tan(options.path.pitch));
+  const auto around = outline(corners, row.stand_off, options.path.pitch);
+  const auto legs = detail::beside(around, sides, n);
+  if (legs.empty())
+    throw argument_error("survey::facade: at this stand-off no place beside these sides is free");
+  const wall_frame frame = frame_on_wall(row.camera, row.stand_off);
+  row.legs = detail::without_jumps(legs, frame.width / 2, row.is_closed);
+  return detail::serpentine(
+      row, place_rows(plan.low, plan.high, frame.height, options.path.overlap_across),
+      row.stand_off * std::tan(options.path.pitch));
+}
+
+}  // namespace aib::survey
+
+// aib/survey/facing.hpp
+
+namespace aib::survey {
+
+/// The direction that would face the surface in the middle half of an image: against the mean of
+/// its normals at 3 x 3 points, of unit length. Nothing where they see no face with these labels
+/// (none: all) within a distance, or the camera has no focal length.
+[[nodiscard]] inline std::optional<Eigen::Vector3d> facing_direction(
+    const math::rigid3& world_from_camera,
+    const math::camera& camera,
+    const mesh::ray_surface& surface,
+    double max_distance,
+    const std::vector<std::uint32_t>& labels = {}) {
+  if (!camera.has_focal()) return std::nullopt;
+  const wall_frame frame = frame_on_wall(camera, 1);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const double x : {-0.25, 0.0, 0.25}) {
+    for (const double y : {-0.25, 0.0, 0.25}) {
+      const Eigen::Vector3d in_camera(x * frame.width, y * frame.height, 1);
+      const Eigen::Vector3d ray = world_from_camera.rotation * in_camera.normalized();
+      const auto hit = surface.first_hit(world_from_camera.translation, ray, max_distance);
+      if (!hit || !is_among(surface.label_at(hit->place), labels)) continue;
+      const Eigen::Vector3d normal = surface.normal_at(hit->place);
+      sum += normal.dot(ray) > 0 ? normal : Eigen::Vector3d(-normal);
+    }
+  }
+  if (!(sum.norm() > 1e-6)) return std::nullopt;
+  return sum.normalized();
 }
 
 }  // namespace aib::survey
@@ -25214,6 +25766,12 @@ enum class aim_rule {
   normal,  ///< along the normal of the surface that it would see, where it sees one
 };
 
+/// What happens where the view would turn faster than the gimbal can.
+enum class gimbal_rule {
+  slow,  ///< the flight slows down there, so that every frame looks as planned
+  lag,   ///< the flight keeps its speed, the view lags behind
+};
+
 /// What a flight keeps away from and looks at.
 struct flight_space {
   const mesh::surface_index& distance;  ///< for the distance
@@ -25228,6 +25786,7 @@ struct fly_options {
   aim_rule aim = aim_rule::path;
   double speed = 2;                                    ///< m/s, gives the stamps
   double gimbal_rate = 60 / math::degrees_per_radian;  ///< radians/s: largest turn of the view
+  gimbal_rule gimbal = gimbal_rule::slow;
   /// Name of the image of a frame, counted from 0.
   std::function<std::string(std::size_t)> name = [](std::size_t i) {
     const std::string digits = std::to_string(i);
@@ -25248,12 +25807,14 @@ struct flight_plan {
   double largest_push = 0;
   std::optional<double> min_distance = {};  ///< of frames and of the way between, to the mesh
   std::size_t min_distance_frame = 0;       ///< at or behind which that is
-  std::size_t n_gimbal_limited = 0;         ///< frames whose view lags behind
+  std::size_t n_gimbal_limited = 0;         ///< frames on whose way the gimbal is the limit
+  double gimbal_delay_s = 0;                ///< what slowing down for it takes
+  std::vector<double> view_lag = {};        ///< radians, of each frame: from the view as planned
 };
 
 namespace detail {
 
-/// A path measured in frames: how many frame widths, or heights, the image moves.
+/// A path measured in frames: how many frame widths, or heights, the image of a wall moves.
 class frame_scale {
  public:
   explicit frame_scale(const flight_path& path) : path_(path) {
@@ -25288,17 +25849,25 @@ class frame_scale {
     double begin;
   };
 
-  static double moved(const leg& l, std::size_t i, const wall_frame& frame) {
+  double moved(const leg& l, std::size_t i, const wall_frame& frame) const {
     const auto share = [](double k) { return k / n_parts; };
     const auto k = static_cast<double>(i);
-    const Eigen::Matrix3d axes = l.at(share(k + 0.5)).rotation;
+    const Eigen::Matrix3d camera_from_world = l.at(share(k + 0.5)).rotation.transpose();
     const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
     const double straight = way.norm();
     // A chord is shorter than its arc.
     const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
-    const double right = std::abs(axes.col(0).dot(way)), down = std::abs(axes.col(1).dot(way));
-    const double ahead = std::abs(axes.col(2).dot(way));
-    return arc * ((right + ahead) / frame.width + down / frame.height);
+    const Eigen::Vector3d by = arc * (camera_from_world * way);
+    // What a turn moves out of an image leaves at its edge, where it moves fastest.
+    const double far = path_.stand_off;
+    const double at_side = far + std::pow(frame.width / 2, 2) / far;
+    const double at_top = far + std::pow(frame.height / 2, 2) / far;
+    const Eigen::Vector3d turn = camera_from_world * l.turn / n_parts;
+    // A turn into the way moves the image more. One against it, as round a corner, less; but then
+    // another side comes into sight: the way counts.
+    const double right = std::abs(by.x()) + std::abs(by.z()), down = std::abs(by.y());
+    return std::max(right, std::abs(by.x() + at_side * turn.y())) / frame.width +
+           std::max(down, std::abs(by.y() - at_top * turn.x())) / frame.height;
   }
 
   const flight_path& path_;
@@ -25338,29 +25907,6 @@ class clearance {
   const mesh::surface_index& surface_;
   double least_;
 };
-
-/// The direction against the mean normal of the surface in the middle half of an image.
-inline std::optional<Eigen::Vector3d> view_of_surface(const math::rigid3& pose,
-                                                      const math::camera& camera,
-                                                      double stand_off,
-                                                      const mesh::ray_surface& surface) {
-  const wall_frame frame = frame_on_wall(camera, 1);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const double x : {-0.25, 0.0, 0.25}) {
-    for (const double y : {-0.25, 0.0, 0.25}) {
-      const Eigen::Vector3d ray =
-          pose.rotation * Eigen::Vector3d(x * frame.width, y * frame.height, 1).normalized();
-      const auto hit = surface.first_hit(pose.translation, ray, 3 * stand_off);
-      if (!hit) continue;
-      const Eigen::Vector3d normal = surface.normal_at(hit->place);
-      sum += normal.dot(ray) > 0 ? normal : Eigen::Vector3d(-normal);
-    }
-  }
-  const Eigen::Vector3d ahead = pose.rotation.col(2);
-  // A view that would turn by more than 60 degrees belongs to something beside the asset.
-  if (!(sum.norm() > 1e-6) || sum.normalized().dot(ahead) < 0.5) return std::nullopt;
-  return sum.normalized();
-}
 
 /// `to`, or on the way to it as far as an angle from `from`.
 inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
@@ -25440,32 +25986,42 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
 
 inline void aim(flight_plan& plan, const flight_path& path, const flight_space& space) {
   for (math::rigid3& pose : plan.trajectory.world_from_camera) {
-    const auto view = view_of_surface(pose, path.camera, path.stand_off, space.sight);
-    if (view) pose.rotation = looking(*view, -pose.rotation.col(1));
+    const auto view = facing_direction(pose, path.camera, space.sight, 3 * path.stand_off);
+    // A view that would turn by more than 60 degrees belongs to something beside the asset.
+    if (view && view->dot(pose.rotation.col(2)) >= 0.5)
+      pose.rotation = looking(*view, -pose.rotation.col(1));
   }
 }
 
-inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) {
+/// Stamps, and views that turn no faster than the gimbal.
+inline void follow(flight_plan& plan, const fly_options& options) {
   auto& poses = plan.trajectory.world_from_camera;
-  double stamp = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (i > 0) {
-      const double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
-      const Eigen::Matrix3d reached = turned_at_most(poses[i - 1].rotation, poses[i].rotation,
-                                                     options.gimbal_rate * time + 1e-9);
-      if (reached != poses[i].rotation) ++plan.n_gimbal_limited;
-      poses[i].rotation = reached;
-      stamp += time;
+  plan.view_lag.assign(poses.size(), 0);
+  plan.trajectory.stamps_s.assign(poses.size(), 0);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Matrix3d from = poses[i - 1].rotation, wanted = poses[i].rotation;
+    double time = (poses[i].translation - poses[i - 1].translation).norm() / options.speed;
+    const double needed = math::rotation_angle(wanted * from.transpose()) / options.gimbal_rate;
+    if (needed > time + 1e-9) {
+      ++plan.n_gimbal_limited;
+      if (options.gimbal == gimbal_rule::slow) {
+        plan.gimbal_delay_s += needed - time;
+        time = needed;
+      } else {
+        poses[i].rotation = turned_at_most(from, wanted, options.gimbal_rate * time);
+        plan.view_lag[i] = math::rotation_angle(wanted * poses[i].rotation.transpose());
+      }
     }
-    plan.trajectory.stamps_s.push_back(stamp);
+    plan.trajectory.stamps_s[i] = plan.trajectory.stamps_s[i - 1] + time;
   }
-  plan.duration_s = stamp;
+  plan.duration_s = plan.trajectory.stamps_s.back();
 }
 
 }  // namespace detail
 
 /// Places frames on a path, evenly by what the image moves: exactly `frames`, or as few as keep the
-/// overlap. The views of the frames turn no faster than the gimbal.
+/// overlap. The views of the frames turn no faster than the gimbal: where they would, the flight
+/// takes longer, or they lag behind and the plan says by how much.
 ///
 /// space   needed for min_distance and for aim_rule::normal
 ///
@@ -25484,7 +26040,7 @@ inline void set_stamps_and_turns(flight_plan& plan, const fly_options& options) 
   detail::place_frames(plan, path, options);
   if (options.min_distance > 0) detail::keep_away(plan, options, *space);
   if (options.aim == aim_rule::normal) detail::aim(plan, path, *space);
-  detail::set_stamps_and_turns(plan, options);
+  detail::follow(plan, options);
   return plan;
 }
 
@@ -25641,7 +26197,9 @@ struct flight_report {
                                 ///< next one sees; NaN where it sees none
   std::vector<float> gsd;       ///< of every ray that counts: depth / focal length
   std::size_t n_rays = 0;
-  double area = 0;                   ///< of the faces that coverage is about
+  std::vector<double> off_normal;  ///< radians, of each frame: from its view to the one that faces
+                                   ///< the surface in its middle; NaN where it sees none there
+  double area = 0;                 ///< of the faces that coverage is about
   std::vector<seen_sample> samples;  ///< evenly by area
 
   /// Share of the area that at least `n` views see.
@@ -25718,6 +26276,17 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
   return points;
 }
 
+/// Angle from a view to the one that faces the surface.
+inline double off_normal(const math::view& v,
+                         const mesh::ray_surface& surface,
+                         const measure_options& options) {
+  const auto facing = facing_direction(v.world_from_camera, v.camera, surface, options.max_distance,
+                                       options.labels);
+  if (!facing) return std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector3d ahead = v.world_from_camera.rotation.col(2);
+  return std::atan2(ahead.cross(*facing).norm(), ahead.dot(*facing));
+}
+
 /// Whether the surface lets a view see a point that lies in its image.
 inline bool sees(const math::view& v,
                  const Eigen::Vector3d& p,
@@ -25755,8 +26324,10 @@ inline namespace AIB_ISA {
 
   std::vector<std::vector<float>> gsd(views.size());
   report.overlap.assign(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  report.off_normal.resize(views.size());
   for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
+      report.off_normal[i] = detail::off_normal(views[i], surface, options);
       const auto points = detail::points_of(views[i], surface, options, gsd[i]);
       if (i + 1 == views.size() || points.empty()) continue;
       const auto seen = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <support/shared.hpp>
+#include <support/stopped.hpp>
 
 #ifdef AIB_WITH_JSON
 #include <nlohmann/json.hpp>
@@ -129,5 +130,18 @@ TEST_CASE("icp ends where Open3D's ends") {
   }
 }
 #endif
+
+TEST_CASE("icp stops, and tells how far it is") {
+  const auto reference = sheet(500, 1);
+  CHECK_THROWS_AS(
+      (void)align::icp(reference, reference, {.max_distance = {1}, .control = support::stopped()}),
+      stopped_error);
+  std::vector<double> shares;
+  (void)align::icp(
+      reference, reference,
+      {.max_distance = {1}, .control = {.progress = [&](double s) { shares.push_back(s); }}});
+  CHECK(shares.size() >= 2);
+  CHECK(shares.back() == 1);
+}
 
 }  // namespace test_icp

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <support/stopped.hpp>
 #include <vector>
 
 using namespace aib;
@@ -79,6 +80,12 @@ TEST_CASE("scores by label are those of the points of the label") {
   CHECK(cloud::score(found[1].to_reference, found[1].to_estimate, tau).scores[0].precision == 0);
   CHECK_THROWS_AS((void)cloud::by_label(both, reference.labels, labels), argument_error);
   CHECK_THROWS_AS((void)cloud::nearest_labels(estimate, estimate), argument_error);
+}
+
+TEST_CASE("offsets and labels of the nearest points stop") {
+  const auto c = floor_with_normals();
+  CHECK_THROWS_AS((void)cloud::offsets_along_normals(c, c, 0, support::stopped()), stopped_error);
+  CHECK_THROWS_AS((void)cloud::nearest_labels(c, c, 0, support::stopped()), stopped_error);
 }
 
 }  // namespace test_offsets

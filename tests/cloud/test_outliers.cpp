@@ -13,6 +13,7 @@
 #include <limits>
 #include <string>
 #include <support/shared.hpp>
+#include <support/stopped.hpp>
 #include <vector>
 
 using namespace aib;
@@ -93,6 +94,19 @@ TEST_CASE("statistical outliers are those that Open3D removes") {
     CHECK(cloud::without_statistical_outliers(c, {.neighbours = 16, .ratio = 1}).size() ==
           e.kept_16_1);
   }
+}
+
+TEST_CASE("work on neighbours stops") {
+  const auto c = tilted_sheet();
+  const auto how = support::stopped();
+  CHECK_THROWS_AS((void)cloud::neighbours(c, how), stopped_error);
+  CHECK_THROWS_AS((void)cloud::with_normals(c, {.control = how}), stopped_error);
+  CHECK_THROWS_AS((void)cloud::without_statistical_outliers(c, {.control = how}), stopped_error);
+  CHECK_THROWS_AS((void)cloud::without_radius_outliers(c, {.radius = 1, .control = how}),
+                  stopped_error);
+  const auto with_normals = cloud::with_normals(c);
+  CHECK_THROWS_AS((void)cloud::normal_consistency(with_normals, with_normals, 0, how),
+                  stopped_error);
 }
 
 }  // namespace test_outliers

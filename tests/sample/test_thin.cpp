@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <support/stopped.hpp>
 
 using namespace aib;
 
@@ -83,6 +84,15 @@ TEST_CASE("elimination refuses what it cannot do and leaves few points alone") {
   CHECK_THROWS_AS(sample::mesh(square(), {.spacing = -1.0, .method = sample::spread::poisson}),
                   argument_error);
   CHECK_THROWS_AS(sample::mesh(square(), {.method = sample::spread::poisson}), argument_error);
+}
+
+TEST_CASE("sampling stops") {
+  const auto points = sample::mesh(square(), {.n = 100}).points;
+  const auto how = support::stopped();
+  CHECK_THROWS_AS((void)sample::mesh(square(), {.n = 100, .control = how}), stopped_error);
+  CHECK_THROWS_AS((void)sample::thin(points, {.spacing = 1, .control = how}), stopped_error);
+  CHECK_THROWS_AS((void)sample::eliminate(points, {.n = 9, .area = 1, .control = how}),
+                  stopped_error);
 }
 
 }  // namespace test_thin

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <aib/math/projection.hpp>
 #include <aib/math/rotation.hpp>
+#include <aib/sample/point_map.hpp>
 #include <aib/sample/unproject.hpp>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <support/stopped.hpp>
 #include <vector>
 
 using namespace aib;
@@ -144,6 +146,14 @@ TEST_CASE("what does not fit together is refused") {
   nowhere.translation.x() = NAN;
   CHECK_THROWS_AS((void)sample::unproject(map, camera, nowhere), argument_error);
   CHECK(sample::unproject({}, camera, {}).points.empty());
+}
+
+TEST_CASE("unprojecting stops") {
+  const auto how = support::stopped();
+  CHECK_THROWS_AS((void)sample::unproject(flat(4, 2, 1), camera, {}, {.control = how}),
+                  stopped_error);
+  const std::vector<float> points(24, 1.0f);
+  CHECK_THROWS_AS((void)sample::place_point_map(points, 4, 2, {}, {.control = how}), stopped_error);
 }
 
 }  // namespace test_unproject

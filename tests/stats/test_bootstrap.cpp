@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <support/stopped.hpp>
 #include <vector>
 
 using namespace aib;
@@ -64,6 +65,11 @@ TEST_CASE("no values and senseless options are refused") {
   const std::vector<double> x = {1};
   CHECK_THROWS_AS((void)stats::bootstrap_mean(x, {.block = 0}), argument_error);
   CHECK_THROWS_AS((void)stats::bootstrap_mean(x, {.level = 1}), argument_error);
+}
+
+TEST_CASE("resampling stops") {
+  CHECK_THROWS_AS((void)stats::bootstrap_mean(series(10, 0), {.control = support::stopped()}),
+                  stopped_error);
 }
 
 }  // namespace test_bootstrap

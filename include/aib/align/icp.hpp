@@ -38,6 +38,7 @@ struct icp_options {
   std::size_t max_iterations = 100;  ///< for each distance of the schedule
   double relative_change = 1e-9;     ///< of fitness and rmse, below which it has converged
   unsigned threads = 0;              ///< 0: all
+  aib::control control = {};         ///< its progress counts iterations
 };
 
 struct icp_result {
@@ -68,8 +69,9 @@ namespace detail {
 struct icp_points {
   std::vector<Eigen::Vector3d> position;
   std::vector<std::size_t> source;
+  const control& how;
 
-  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin) {
+  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin, const control& h) : how(h) {
     for (std::size_t i = 0; i < c.size(); ++i) {
       if (!cloud::is_finite(c.points[i])) continue;
       position.push_back(c.position(i) - origin);
@@ -83,6 +85,7 @@ struct icp_points {
   // The interface that nanoflann asks for.
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
   [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
     return position[i][static_cast<Eigen::Index>(axis)];
   }
   template <class Box>
@@ -107,8 +110,8 @@ class icp_solver {
              const icp_options& options)
       : options_(options),
         reference_cloud_(reference),
-        estimate_(estimate, reference.origin),
-        reference_(reference, reference.origin),
+        estimate_(estimate, reference.origin, options.control),
+        reference_(reference, reference.origin, options.control),
         tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
 
   [[nodiscard]] icp_result run();
@@ -122,6 +125,7 @@ class icp_solver {
                                                  double max_distance) const;
   [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
   [[nodiscard]] math::sim3 step(const icp_pairs& p) const;
+  void tell(double share) const;
   [[nodiscard]] math::sim3 plane_step(const icp_pairs& p) const;
 
   const icp_options& options_;
@@ -134,14 +138,15 @@ class icp_solver {
 inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
                                                     double max_distance) const {
   std::vector<std::size_t> match(moved.size(), none);
-  for_each_chunk(moved.size(), 4096, options_.threads, {}, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      std::size_t index = 0;
-      double squared = 0;
-      tree_.knnSearch(moved[i].data(), 1, &index, &squared);
-      if (squared < max_distance * max_distance) match[i] = index;
-    }
-  });
+  for_each_chunk(moved.size(), 4096, options_.threads, {options_.control.stop},
+                 [&](const chunk& c) {
+                   for (std::size_t i = c.begin; i < c.end; ++i) {
+                     std::size_t index = 0;
+                     double squared = 0;
+                     tree_.knnSearch(moved[i].data(), 1, &index, &squared);
+                     if (squared < max_distance * max_distance) match[i] = index;
+                   }
+                 });
   return match;
 }
 
@@ -197,7 +202,12 @@ inline math::sim3 icp_solver::step(const icp_pairs& p) const {
   return umeyama(p.estimate, p.reference, {.scale = options_.with_scale});
 }
 
+inline void icp_solver::tell(double share) const {
+  if (options_.control.progress) options_.control.progress(share);
+}
+
 inline icp_result icp_solver::run() {
+  const auto most = static_cast<double>(options_.max_distance.size() * options_.max_iterations);
   const Eigen::Vector3d& origin = reference_cloud_.origin;
   const math::sim3 to_local{1, Eigen::Matrix3d::Identity(), -origin};
   math::sim3 now = to_local * options_.init * to_local.inverse();
@@ -215,12 +225,13 @@ inline icp_result icp_solver::run() {
       result.converged = std::abs(next.fitness - p.fitness) < options_.relative_change &&
                          std::abs(next.rmse - p.rmse) < options_.relative_change;
       p = std::move(next);
-      ++result.n_iterations;
+      tell(static_cast<double>(++result.n_iterations) / most);
     }
     result.fitness = p.fitness;
     result.rmse = p.rmse;
     result.n_pairs = p.estimate.size();
   }
+  tell(1);
   result.transform = to_local.inverse() * now * to_local;
   return result;
 }

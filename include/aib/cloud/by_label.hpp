@@ -25,17 +25,18 @@ namespace aib::cloud {
 /// Throws argument_error if the reference has no labels, undefined_error if it has no finite point.
 [[nodiscard]] inline std::vector<std::uint32_t> nearest_labels(const cloud& points,
                                                                const cloud& labelled,
-                                                               unsigned threads = 0) {
+                                                               unsigned threads = 0,
+                                                               const control& control = {}) {
   if (labelled.labels.size() != labelled.size()) {
     throw argument_error("cloud::nearest_labels: a reference with labels expected");
   }
-  const neighbours search(labelled);
+  const neighbours search(labelled, control);
   if (search.size() == 0) {
     throw undefined_error(message("cloud::nearest_labels: no finite point in the reference (",
                                   labelled.size(), " points)"));
   }
   std::vector<std::uint32_t> labels(points.size());
-  for_each_chunk(points.size(), 1024, threads, {}, [&](const chunk& c) {
+  for_each_chunk(points.size(), 1024, threads, control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
       if (!is_finite(points.points[i])) continue;
       labels[i] = labelled.labels[search.nearest(points.position(i), 1).front().index];

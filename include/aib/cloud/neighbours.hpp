@@ -4,6 +4,7 @@
 
 #include <aib/cloud/cloud.hpp>
 #include <aib/cloud/positions.hpp>
+#include <aib/core/executor.hpp>
 
 #include <Eigen/Core>
 #include <nanoflann.hpp>
@@ -26,7 +27,9 @@ struct neighbour {
 /// Borrows nothing. For the one nearest point of millions see cloud::distances.
 class neighbours {
  public:
-  explicit neighbours(const cloud& c) : points_(c), tree_(3, points_, {10}) {}
+  /// control   asked while the tree is built
+  explicit neighbours(const cloud& c, const control& control = {})
+      : points_(c, control), tree_(3, points_, {10}) {}
   neighbours(const neighbours&) = delete;
   neighbours& operator=(const neighbours&) = delete;
 
@@ -84,8 +87,9 @@ class neighbours {
     Eigen::Vector3d origin;
     std::vector<Eigen::Vector3d> position;
     std::vector<std::size_t> source;
+    control how;
 
-    explicit finite_positions(const cloud& c) : origin(c.origin) {
+    finite_positions(const cloud& c, const control& h) : origin(c.origin), how(h) {
       for (std::size_t i = 0; i < c.size(); ++i) {
         if (!is_finite(c.points[i])) continue;
         position.push_back(c.points[i].cast<double>());
@@ -96,6 +100,7 @@ class neighbours {
     // The interface that nanoflann asks for.
     [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
     [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
       return position[i][static_cast<Eigen::Index>(axis)];
     }
     template <class Box>

@@ -24,6 +24,7 @@ namespace aib::cloud {
 struct normal_options {
   std::size_t neighbours = 30;  ///< the point itself included
   unsigned threads = 0;         ///< 0: all
+  aib::control control = {};
 };
 
 /// The cloud with a normal for each point: the direction in which its nearest neighbours spread
@@ -31,10 +32,10 @@ struct normal_options {
 /// (0, 0, 1).
 /// Source: Hoppe et al., SIGGRAPH 1992, section 3.2.
 [[nodiscard]] inline cloud with_normals(const cloud& c, const normal_options& options = {}) {
-  const neighbours search(c);
+  const neighbours search(c, options.control);
   cloud result = c;
   result.normals.assign(c.size(), Eigen::Vector3f(0, 0, 1));
-  for_each_chunk(c.size(), 1024, options.threads, {}, [&](const chunk& part) {
+  for_each_chunk(c.size(), 1024, options.threads, options.control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (!is_finite(c.points[i])) continue;
       const auto found = search.nearest(c.position(i), options.neighbours);
@@ -66,10 +67,13 @@ struct normal_consistency_result {
 
 namespace detail {
 
-inline std::vector<double> normal_cosines(const cloud& from, const cloud& to, unsigned threads) {
-  const neighbours search(to);
+inline std::vector<double> normal_cosines(const cloud& from,
+                                          const cloud& to,
+                                          unsigned threads,
+                                          const control& control) {
+  const neighbours search(to, control);
   std::vector<double> cosine(from.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& part) {
+  for_each_chunk(from.size(), 1024, threads, control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (!is_finite(from.points[i])) continue;
       const auto found = search.nearest(from.position(i), 1);
@@ -97,14 +101,15 @@ inline double mean_of(std::span<const double> values) {
 /// Source: Wang et al., "Continuous 3D perception model with persistent state" (CUT3R), CVPR 2025.
 [[nodiscard]] inline normal_consistency_result normal_consistency(const cloud& estimate,
                                                                   const cloud& reference,
-                                                                  unsigned threads = 0) {
+                                                                  unsigned threads = 0,
+                                                                  const control& control = {}) {
   for (const cloud* c : {&estimate, &reference}) {
     if (c->normals.size() != c->size()) {
       throw argument_error("cloud::normal_consistency: clouds with normals expected");
     }
   }
-  const auto e = detail::normal_cosines(estimate, reference, threads);
-  const auto r = detail::normal_cosines(reference, estimate, threads);
+  const auto e = detail::normal_cosines(estimate, reference, threads, control);
+  const auto r = detail::normal_cosines(reference, estimate, threads, control);
   const std::span<const double> es(e), rs(r);
   return {detail::mean_of(es), stats::median(es), detail::mean_of(rs), stats::median(rs)};
 }

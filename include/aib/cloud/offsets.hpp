@@ -84,18 +84,19 @@ class offsets {
 /// finite point.
 [[nodiscard]] inline offsets offsets_along_normals(const cloud& from,
                                                    const cloud& reference,
-                                                   unsigned threads = 0) {
+                                                   unsigned threads = 0,
+                                                   const control& control = {}) {
   if (reference.normals.size() != reference.size()) {
     throw argument_error("cloud::offsets_along_normals: a reference with normals expected");
   }
-  const neighbours search(reference);
+  const neighbours search(reference, control);
   if (search.size() == 0) {
     throw undefined_error(
         message("cloud::offsets_along_normals: no finite point in the reference (",
                 reference.size(), " points)"));
   }
   std::vector<float> values(from.size(), std::numeric_limits<float>::quiet_NaN());
-  for_each_chunk(from.size(), 1024, threads, {}, [&](const chunk& c) {
+  for_each_chunk(from.size(), 1024, threads, control, [&](const chunk& c) {
     for (std::size_t i = c.begin; i < c.end; ++i) {
       if (!is_finite(from.points[i])) continue;
       const std::size_t nearest = search.nearest(from.position(i), 1).front().index;

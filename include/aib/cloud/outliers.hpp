@@ -25,21 +25,26 @@ struct statistical_options {
   std::size_t neighbours = 20;  ///< the point itself included
   double ratio = 2;             ///< standard deviations above the mean that are kept
   unsigned threads = 0;         ///< 0: all
+  aib::control control = {};
 };
 
 struct radius_options {
   double radius = 0;
   std::size_t neighbours = 2;  ///< more points than this, the point itself included, are kept
   unsigned threads = 0;        ///< 0: all
+  aib::control control = {};
 };
 
 namespace detail {
 
 /// A number for each point, of NaN where the point is not finite.
 template <class Measure>
-std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& measure) {
+std::vector<double> measure_points(const cloud& c,
+                                   unsigned threads,
+                                   const control& control,
+                                   Measure&& measure) {
   std::vector<double> values(c.size(), std::numeric_limits<double>::quiet_NaN());
-  for_each_chunk(c.size(), 1024, threads, {}, [&](const chunk& part) {
+  for_each_chunk(c.size(), 1024, threads, control, [&](const chunk& part) {
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (is_finite(c.points[i])) values[i] = measure(c.position(i));
     }
@@ -57,13 +62,14 @@ std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& m
   if (options.neighbours == 0 || !(options.ratio > 0)) {
     throw argument_error("cloud::without_statistical_outliers: neighbours > 0, ratio > 0 expected");
   }
-  const neighbours search(c);
-  const auto spread = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    const auto found = search.nearest(p, options.neighbours);
-    double sum = 0;
-    for (const neighbour& n : found) sum += n.distance;
-    return sum / static_cast<double>(found.size());
-  });
+  const neighbours search(c, options.control);
+  const auto spread =
+      detail::measure_points(c, options.threads, options.control, [&](const Eigen::Vector3d& p) {
+        const auto found = search.nearest(p, options.neighbours);
+        double sum = 0;
+        for (const neighbour& n : found) sum += n.distance;
+        return sum / static_cast<double>(found.size());
+      });
   double sum = 0, squares = 0, n = 0;
   for (const double s : spread) {
     if (s > 0) sum += s, ++n;
@@ -82,10 +88,11 @@ std::vector<double> measure_points(const cloud& c, unsigned threads, Measure&& m
     throw argument_error(
         message("cloud::without_radius_outliers: radius > 0 expected, found ", options.radius));
   }
-  const neighbours search(c);
-  const auto count = detail::measure_points(c, options.threads, [&](const Eigen::Vector3d& p) {
-    return static_cast<double>(search.count_within(p, options.radius));
-  });
+  const neighbours search(c, options.control);
+  const auto count =
+      detail::measure_points(c, options.threads, options.control, [&](const Eigen::Vector3d& p) {
+        return static_cast<double>(search.count_within(p, options.radius));
+      });
   const auto least = static_cast<double>(options.neighbours);
   return select_where(c, [&](std::size_t i) { return count[i] > least; });
 }

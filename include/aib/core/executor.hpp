@@ -31,6 +31,11 @@ struct control {
       {};  ///< called with 0..1, never from two threads at once
 };
 
+/// Throws stopped_error when `control.stop` was requested: for long loops that are no chunks.
+inline void demand_go(const control& control) {
+  if (control.stop.stop_requested()) throw stopped_error("stopped");
+}
+
 /// Threads that the process may use: affinity mask and cgroup quota, at least 1.
 unsigned available_threads();
 

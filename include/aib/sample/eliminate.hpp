@@ -19,9 +19,10 @@
 namespace aib::sample {
 
 struct eliminate_options {
-  std::size_t n = 0;  ///< points that stay
-  double area = 0;    ///< of the surface that the points lie on, square units
-  unsigned threads = 0;
+  std::size_t n = 0;     ///< points that stay
+  double area = 0;       ///< of the surface that the points lie on, square units
+  unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 namespace detail {
@@ -31,12 +32,13 @@ class crowd {
  public:
   crowd(const cloud::cloud& points, const eliminate_options& options)
       : points_(points),
-        search_(points),
+        control_(options.control),
+        search_(points, options.control),
         reach_(2 * std::sqrt(options.area /
                              (2 * std::numbers::sqrt3 * static_cast<double>(options.n)))),
         weight_(points.size()),
         gone_(points.size()) {
-    for_each_chunk(points.size(), 1024, options.threads, {}, [&](const chunk& c) {
+    for_each_chunk(points.size(), 1024, options.threads, control_, [&](const chunk& c) {
       for (std::size_t i = c.begin; i < c.end; ++i) {
         for (const std::size_t j : neighbours_of(i)) weight_[i] += pressure(i, j);
       }
@@ -49,6 +51,7 @@ class crowd {
     std::priority_queue<entry> queue;
     for (std::size_t i = 0; i < weight_.size(); ++i) queue.emplace(weight_[i], i);
     for (std::size_t left = weight_.size(); left > n;) {
+      demand_go(control_);
       const auto [weight, i] = queue.top();
       queue.pop();
       if (gone_[i] || weight != weight_[i]) continue;  // has been put in again with less
@@ -85,6 +88,7 @@ class crowd {
   }
 
   const cloud::cloud& points_;
+  const control& control_;
   cloud::neighbours search_;
   double reach_;
   std::vector<double> weight_;

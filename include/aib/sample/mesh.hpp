@@ -42,6 +42,7 @@ struct mesh_options {
   spread method = spread::uniform;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: all
+  aib::control control = {};
 };
 
 /// Points on a surface and how densely they lie.
@@ -150,20 +151,21 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 4096, options.threads, {}, [&](const chunk& c) {
-    for (std::size_t t = c.begin; t < c.end; ++t) {
-      if (starts[t] == starts[t + 1]) continue;
-      const auto corner = aib::mesh::corners(surface, t);
-      const Eigen::Vector3f normal = unit_normal(corner);
-      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-        const Eigen::Vector3d p =
-            point_in(corner, uniform(options.seed, 2 * i + 1), uniform(options.seed, 2 * i + 2));
-        points.points[i] = p.cast<float>();
-        points.normals[i] = normal;
-        if (!points.labels.empty()) points.labels[i] = surface.labels[t];
-      }
-    }
-  });
+  for_each_chunk(surface.triangles.size(), 4096, options.threads, options.control,
+                 [&](const chunk& c) {
+                   for (std::size_t t = c.begin; t < c.end; ++t) {
+                     if (starts[t] == starts[t + 1]) continue;
+                     const auto corner = aib::mesh::corners(surface, t);
+                     const Eigen::Vector3f normal = unit_normal(corner);
+                     for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+                       const Eigen::Vector3d p = point_in(corner, uniform(options.seed, 2 * i + 1),
+                                                          uniform(options.seed, 2 * i + 2));
+                       points.points[i] = p.cast<float>();
+                       points.normals[i] = normal;
+                       if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+                     }
+                   }
+                 });
   const double density = static_cast<double>(n) / area;
   return {std::move(points), area, density, sampling_floor(density)};
 }
@@ -189,10 +191,11 @@ inline mesh_samples poisson_samples(const aib::mesh::mesh& surface, const mesh_o
   const cloud::cloud all = std::move(samples.points);
   samples.points =
       options.spacing
-          ? thin(all, {.spacing = *options.spacing, .seed = options.seed})
-          : eliminate(all, {.n = all.size() / 5, .area = samples.area, .threads = options.threads});
+          ? thin(all, {*options.spacing, options.seed, options.control})
+          : eliminate(all, {all.size() / 5, samples.area, options.threads, options.control});
   samples.density = static_cast<double>(samples.points.size()) / samples.area;
-  const cloud::distances apart(all, samples.points, {.threads = options.threads});
+  const cloud::distances apart(all, samples.points,
+                               {.threads = options.threads, .control = options.control});
   // The kept points are candidates too, at distance 0.
   samples.floor = apart.mean() * static_cast<double>(all.size()) /
                   static_cast<double>(all.size() - std::min(all.size() - 1, samples.points.size()));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/error.hpp>
+#include <aib/core/executor.hpp>
 #include <aib/depth/depth_map.hpp>
 #include <aib/math/rigid3.hpp>
 #include <aib/sample/unproject.hpp>
@@ -42,6 +43,7 @@ namespace aib::sample {
   unprojected made{};
   made.points.origin = cloud::natural_origin(centre, centre);
   for (std::size_t y = 0; y < height; y += options.stride) {
+    demand_go(options.control);
     for (std::size_t x = 0; x < width; x += options.stride) {
       const float* at = xyz.data() + 3 * (y * width + x);
       const Eigen::Vector3d p_in_camera = Eigen::Map<const Eigen::Vector3f>(at).cast<double>();

@@ -6,6 +6,7 @@
 #include <aib/cloud/positions.hpp>
 #include <aib/cloud/select.hpp>
 #include <aib/core/error.hpp>
+#include <aib/core/executor.hpp>
 #include <aib/core/random.hpp>
 
 #include <Eigen/Core>
@@ -24,6 +25,7 @@ namespace aib::sample {
 struct thin_options {
   double spacing = 0;  ///< in the unit of the cloud
   std::uint64_t seed = 1;
+  aib::control control = {};
 };
 
 namespace detail {
@@ -95,6 +97,7 @@ inline std::vector<std::size_t> shuffled(std::size_t n, std::uint64_t seed) {
   detail::spaced_points kept(options.spacing);
   std::vector<std::size_t> index;
   for (const std::size_t i : detail::shuffled(points.size(), options.seed)) {
+    demand_go(options.control);
     if (!cloud::is_finite(points.points[i])) continue;
     if (kept.keep(points.points[i].cast<double>())) index.push_back(i);
   }

@@ -45,6 +45,7 @@ struct unproject_options {
   depth_meaning meaning = depth_meaning::planar;
   raster::view<const raster::rgb> colors = {};  ///< none, or of the size of the map
   unsigned threads = 0;                         ///< 0: all
+  aib::control control = {};
 };
 
 /// Points of a depth map, and what became of its pixels.
@@ -196,7 +197,8 @@ inline unprojected unproject(const depth::depth_map& map,
     for (std::size_t i = c.begin; i < c.end; ++i) rows.add_row(i * options.stride, part);
     return part;
   };
-  return reduce_chunks(n_rows, 32, options.threads, {}, nothing, points_of, detail::append);
+  return reduce_chunks(n_rows, 32, options.threads, options.control, nothing, points_of,
+                       detail::append);
 }
 
 }  // namespace aib::sample

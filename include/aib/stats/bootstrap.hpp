@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/error.hpp>
+#include <aib/core/executor.hpp>
 #include <aib/core/random.hpp>
 #include <aib/stats/moments.hpp>
 #include <aib/stats/quantiles.hpp>
@@ -20,6 +21,7 @@ struct bootstrap_options {
   std::size_t resamples = 2000;
   double level = 0.95;  ///< share of the resampled means inside the interval
   std::uint64_t seed = 1;
+  aib::control control = {};
 };
 
 /// A mean and how far it may be off.
@@ -51,6 +53,7 @@ struct interval {
   random_engine random(options.seed);
   std::vector<double> means(options.resamples);
   for (double& mean : means) {
+    demand_go(options.control);
     moments sample;
     while (sample.count() < n) {
       const std::size_t first = random.below(n);

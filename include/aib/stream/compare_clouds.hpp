@@ -167,7 +167,7 @@ inline stored_distances in_file_order(tiled_cloud& queries,
   stored_distances stored(options.folder, how);
   std::vector<std::uint16_t> tile_of;
   for (std::uint64_t i = 0; i < queries.tile_of.size(); i += tile_of.size()) {
-    detail::demand_go(options.compare.control);
+    demand_go(options.compare.control);
     tile_of.resize(static_cast<std::size_t>(
         std::min<std::uint64_t>(queries.tile_of.size() - i, cloud::detail::value_chunk)));
     queries.tile_of.read(i, tile_of);

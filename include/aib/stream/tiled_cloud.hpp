@@ -31,10 +31,6 @@ struct cloud_file {
 
 namespace detail {
 
-inline void demand_go(const control& control) {
-  if (control.stop.stop_requested()) throw stopped_error("stopped");
-}
-
 /// Calls `visit(index, position)` for each point of a file.
 template <class Visit>
 void for_each_position(const std::filesystem::path& path, const control& control, Visit&& visit) {
