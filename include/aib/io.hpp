@@ -35,6 +35,7 @@
 #include <aib/io/image.hpp>
 #include <aib/io/kitti.hpp>
 #include <aib/io/las.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/mesh.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/io/number_lines.hpp>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/distances.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/io/pose_arrays.hpp>
 #include <aib/io/trajectory.hpp>
@@ -35,8 +36,8 @@ std::size_t bytes_of_array(const io::array& a) { return a.bytes.size(); }
 bool is_npz(const fs::path& path) { return path.extension() == ".npz"; }
 
 #ifdef AIB_WITH_NPZ
-io::array read_member(const fs::path& path, const std::string& key) {
-  const io::npz_file file(path);
+io::array read_member(const fs::path& path, const std::string& key, const io::limits& limits) {
+  const io::npz_file file(path, limits);
   const std::vector<std::string> names = file.names();
   return file.read(key.empty() && names.size() == 1 ? names.front() : key);
 }
@@ -44,7 +45,7 @@ std::vector<std::string> member_names(const fs::path& path) {
   return is_npz(path) ? io::npz_file(path).names() : std::vector<std::string>();
 }
 #else
-io::array read_member(const fs::path& path, const std::string&) {
+io::array read_member(const fs::path& path, const std::string&, const io::limits&) {
   io::detail::needs_library(path, "NPZ", "zlib");
 }
 std::vector<std::string> member_names(const fs::path& path) {
@@ -154,8 +155,11 @@ void bind_io_arrays(lua_State* state) {
       .function("read_array", {"path", "options"},
                 [](const fs::path& path, options& o) {
                   const std::string key = o.text("key", "");
+                  io::limits limits;
+                  limits.max_ratio = o.number("max_ratio", limits.max_ratio);
+                  limits.max_bytes = o.count("max_bytes", limits.max_bytes);
                   o.done();
-                  return is_npz(path) ? read_member(path, key) : io::read_npy(path);
+                  return is_npz(path) ? read_member(path, key, limits) : io::read_npy(path);
                 })
       .function("array_names", {"path"}, [](const fs::path& path) { return member_names(path); })
       .function("array", {"value"}, [](const sol::object& value) { return array_of(value); })

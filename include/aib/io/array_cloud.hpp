@@ -61,8 +61,10 @@ inline cloud::cloud read_npy_cloud(const std::filesystem::path& path) {
 ///
 /// 8-bit `colors` or `rgb` of the same shape come with it.
 /// Throws format_error where there is no such array.
-inline cloud::cloud read_npz_cloud(const std::filesystem::path& path, std::string key = {}) {
-  const npz_file file(path);
+inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
+                                   std::string key = {},
+                                   const limits& limits = {}) {
+  const npz_file file(path, limits);
   std::string names;
   std::vector<std::string> candidates;
   for (const std::string& name : file.names()) {

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/npy.hpp>
 
 #include <algorithm>
@@ -47,7 +48,9 @@ class array_frames {
 ///       with two axes or more
 ///
 /// Pickled members are never loaded. Throws format_error where there is no such array.
-array_frames read_array_frames(const std::filesystem::path& path, const std::string& key = {});
+array_frames read_array_frames(const std::filesystem::path& path,
+                               const std::string& key = {},
+                               const limits& limits = {});
 
 inline array_frames::array_frames(array values,
                                   const std::filesystem::path& path,
@@ -112,13 +115,15 @@ inline std::string depth_member(const npz_file& file, const std::string& key) {
 
 #endif
 
-inline array_frames read_array_frames(const std::filesystem::path& path, const std::string& key) {
+inline array_frames read_array_frames(const std::filesystem::path& path,
+                                      const std::string& key,
+                                      [[maybe_unused]] const limits& limits) {
   std::string begin(2, '\0');
   const input_file file(path);
   if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
   if (begin != "PK") return array_frames(read_npy(path), path, key);
 #if defined(AIB_WITH_NPZ)
-  const npz_file members(path);
+  const npz_file members(path, limits);
   const std::string name = detail::depth_member(members, key);
   return array_frames(members.read(name), path, name);
 #else

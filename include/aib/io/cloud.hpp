@@ -8,6 +8,7 @@
 #include <aib/io/axes.hpp>
 #include <aib/io/file_kind.hpp>
 #include <aib/io/las.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/obj.hpp>
 #include <aib/io/pcd.hpp>
 #include <aib/io/ply.hpp>
@@ -29,6 +30,7 @@ struct cloud_options {
   up_axis up = up_axis::z;                 ///< axis that points up in the file
   splat_rule splats = splat_rule::refuse;  ///< PLY files of 3D Gaussian splats
   std::string key = {};                    ///< NPZ: name of the array; empty: see read_npz_cloud
+  io::limits limits = {};
 };
 
 /// Reads a cloud; the format is told from the content, then from the extension: PLY, PCD, XYZ, CSV,
@@ -63,7 +65,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
       return read_npy_cloud(path);
     case file_kind::npz:
 #if defined(AIB_WITH_NPZ)
-      return read_npz_cloud(path, options.key);
+      return read_npz_cloud(path, options.key, options.limits);
 #else
       throw format_error(path, "this build of aib reads no NPZ; build it with zlib");
 #endif
@@ -89,6 +91,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
 
 inline cloud::cloud read_cloud(const std::filesystem::path& path, const cloud_options& options) {
   cloud::cloud result = detail::read_stored_cloud(path, options);
+  demand_points(path, "points", result.size(), options.limits);
   turn_z_up(result, options.up);
   return result;
 }

@@ -8,6 +8,7 @@
 #include <aib/io/colmap_depth.hpp>
 #include <aib/io/dmap.hpp>
 #include <aib/io/file_kind.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/io/pfm.hpp>
 #include <aib/io/range_depth.hpp>
@@ -49,6 +50,7 @@ struct depth_options {
   raster::nearest_rule rule = raster::nearest_rule::centre;
   std::size_t raw_width = 0, raw_height = 0;      ///< files without header (ETH3D): their size
   std::optional<math::camera> range_camera = {};  ///< the file holds distances along its rays
+  io::limits limits = {};
 };
 
 /// Reads a depth map; the format is told from the content, then from the extension: EXR, PFM, NPY,
@@ -80,7 +82,7 @@ namespace detail {
 
 inline depth::depth_map read_depth_array(const std::filesystem::path& path,
                                          const depth_options& options) {
-  const array_frames frames = read_array_frames(path, options.key);
+  const array_frames frames = read_array_frames(path, options.key, options.limits);
   if (!options.index && frames.size() > 1)
     throw argument_error(message(path.string(), ": ", frames.size(),
                                  " frames in the array; the option index says which to read"));
@@ -95,7 +97,8 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
   return read_exr(path, {.channel = options.channel,
                          .width = shrink ? options.width : 0,
                          .height = shrink ? options.height : 0,
-                         .rule = options.rule});
+                         .rule = options.rule,
+                         .limits = options.limits});
 #else
   static_cast<void>(options);
   throw format_error(path, "this build of aib reads no EXR; build it with zlib");
@@ -105,12 +108,12 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
 inline depth::depth_map read_png_depth(const std::filesystem::path& path,
                                        const depth_options& options) {
 #if defined(AIB_WITH_PNG)
-  const png_header header = read_png_header(path);
+  const png_header header = read_png_header(path, options.limits);
   if (header.bits != 16 || !header.is_gray)
     throw format_error(path,
                        "png: gray depth of 16 bits expected; 8 bits or colours are a picture "
                        "of depth, not depth");
-  const auto stored = read_png_gray(path);
+  const auto stored = read_png_gray(path, options.limits);
   depth::depth_map result{raster::image<float>(stored.width(), stored.height())};
   std::copy(stored.begin(), stored.end(), result.values.begin());
   if (options.scale == 0)
@@ -201,7 +204,9 @@ inline depth::depth_map read_depth(const std::filesystem::path& path,
                                    const depth_options& options) {
   detail::check_depth_options(options);
   const file_kind kind = kind_of(path);
-  return detail::finish_depth(detail::read_stored_depth(path, kind, options), kind, options);
+  depth::depth_map stored = detail::read_stored_depth(path, kind, options);
+  demand_pixels(path, "depth", stored.values.width(), stored.values.height(), options.limits);
+  return detail::finish_depth(std::move(stored), kind, options);
 }
 
 inline std::vector<depth::depth_map> read_depth_stack(const std::filesystem::path& path,
@@ -213,9 +218,12 @@ inline std::vector<depth::depth_map> read_depth_stack(const std::filesystem::pat
     stack.push_back(read_depth(path, options));
     return stack;
   }
-  const array_frames frames = read_array_frames(path, options.key);
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    stack.push_back(detail::finish_depth({frames.frame(i)}, kind, options));
+  const array_frames frames = read_array_frames(path, options.key, options.limits);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    depth::depth_map frame{frames.frame(i)};
+    demand_pixels(path, "depth", frame.values.width(), frame.values.height(), options.limits);
+    stack.push_back(detail::finish_depth(std::move(frame), kind, options));
+  }
   return stack;
 }
 

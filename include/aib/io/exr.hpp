@@ -8,6 +8,7 @@
 #include <aib/io/exr_header.hpp>
 #include <aib/io/exr_predictor.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/raster/downsample.hpp>
 #include <aib/raster/image.hpp>
 #include <aib/raster/view.hpp>
@@ -35,6 +36,7 @@ struct exr_options {
   /// are decoded.
   std::size_t width = 0, height = 0;
   raster::nearest_rule rule = raster::nearest_rule::centre;
+  io::limits limits = {};
 };
 
 /// Reads a depth map from an OpenEXR file.
@@ -212,7 +214,7 @@ inline std::vector<std::string> exr_channel_names(const std::filesystem::path& p
 
 inline depth::depth_map read_exr(const std::filesystem::path& path, const exr_options& options) {
   const input_file file(path);
-  const exr_header header = read_exr_header(file);
+  const exr_header header = read_exr_header(file, options.limits);
   const detail::exr_chooser chooser(header, path);
   const detail::exr_choice choice = chooser.choose(options.channel);
   const exr_part& part = header.parts[choice.part];
@@ -342,7 +344,7 @@ class exr_writer {
 inline void write_exr(const std::filesystem::path& path,
                       raster::view<const float> depth,
                       const exr_write_options& options) {
-  if (depth.empty() || depth.size() > exr_max_pixels)
+  if (depth.empty() || depth.size() > limits{}.max_pixels)
     throw argument_error(message("io::write_exr: an image of ", depth.width, "x", depth.height));
   if (options.compression != exr_compression::none &&
       options.compression != exr_compression::zips && options.compression != exr_compression::zip)

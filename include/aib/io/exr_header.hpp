@@ -6,6 +6,7 @@
 #include <aib/io/byte_stream.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 
 #include <array>
 #include <cstddef>
@@ -73,14 +74,11 @@ struct exr_header {
   bool is_multipart = false;  ///< blocks say which part they belong to
 };
 
-/// Largest image that is read, in pixels.
-inline constexpr std::uint64_t exr_max_pixels = std::uint64_t{1} << 27;
-
 /// Reads and checks the header of an OpenEXR file. Throws format_error where it is damaged, where
-/// the image is larger than exr_max_pixels or than what the file can hold, and where it has what
+/// the image is larger than the limits or than what the file can hold, and where it has what
 /// aib does not read: deep data, sub-sampled channels. Source of the format: "OpenEXR File Layout",
 /// openexr.com.
-exr_header read_exr_header(const input_file& file);
+exr_header read_exr_header(const input_file& file, const limits& limits = {});
 
 /// "ZIP" and the like.
 [[nodiscard]] constexpr std::string_view name(exr_compression compression) {
@@ -99,7 +97,8 @@ namespace detail {
 
 class exr_header_parser {
  public:
-  explicit exr_header_parser(const input_file& file) : file_(file), stream_(file) {}
+  exr_header_parser(const input_file& file, const limits& limits)
+      : file_(file), limits_(limits), stream_(file) {}
 
   exr_header parse() {
     constexpr std::uint32_t magic = 20000630;
@@ -210,11 +209,10 @@ class exr_header_parser {
     w.min_y = in.read<std::int32_t>("exr: window");
     w.max_x = in.read<std::int32_t>("exr: window");
     w.max_y = in.read<std::int32_t>("exr: window");
-    const bool ordered = w.max_x >= w.min_x && w.max_y >= w.min_y;
-    if (!ordered || w.width() > exr_max_pixels / w.height()) {
+    if (w.max_x < w.min_x || w.max_y < w.min_y)
       fail(message("exr: window (", w.min_x, ", ", w.min_y, ") to (", w.max_x, ", ", w.max_y,
-                   ") is empty or larger than ", exr_max_pixels, " pixels"));
-    }
+                   ") is empty"));
+    demand_pixels(file_.path(), "exr", w.width(), w.height(), limits_);
     return w;
   }
 
@@ -227,7 +225,7 @@ class exr_header_parser {
     if (!seen_.display) part.display = part.data;
     if (!is_tiled_) part.tile_width = part.tile_height = 0;
     if (is_tiled_ && (!seen_.tiles || part.tile_width == 0 || part.tile_height == 0 ||
-                      part.tile_width > exr_max_pixels / part.tile_height))
+                      part.tile_width > limits_.max_pixels / part.tile_height))
       fail("exr: no size of the tiles in the header");
     n_blocks_.push_back(block_count(part));
   }
@@ -260,6 +258,7 @@ class exr_header_parser {
   [[noreturn]] void fail(std::string_view what) const { stream_.fail(what); }
 
   const input_file& file_;
+  const limits& limits_;
   byte_stream stream_;
   exr_header header_;
   bool is_tiled_ = false;
@@ -269,8 +268,8 @@ class exr_header_parser {
 
 }  // namespace detail
 
-inline exr_header read_exr_header(const input_file& file) {
-  return detail::exr_header_parser(file).parse();
+inline exr_header read_exr_header(const input_file& file, const limits& limits) {
+  return detail::exr_header_parser(file, limits).parse();
 }
 
 }  // namespace aib::io

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/file_kind.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/raster/color.hpp>
 #include <aib/raster/view.hpp>
 
@@ -21,10 +22,11 @@ namespace aib::io {
 
 /// Whether an image file holds one number a pixel (gray, or a palette) and no transparency, so that
 /// read_labels reads it. Throws as read_image does.
-inline bool is_label_image(const std::filesystem::path& path) {
+inline bool is_label_image(const std::filesystem::path& path,
+                           [[maybe_unused]] const limits& limits = {}) {
 #if defined(AIB_WITH_PNG)
   if (kind_of(path) == file_kind::png) {
-    const png_header header = read_png_header(path);
+    const png_header header = read_png_header(path, limits);
     return header.is_gray && !header.has_alpha;
   }
 #endif
@@ -33,18 +35,20 @@ inline bool is_label_image(const std::filesystem::path& path) {
 }
 
 /// Reads a picture, PNG or JPEG, as 8-bit colours. Transparency is dropped.
-/// Throws format_error where the file is damaged or no picture that this build reads.
-inline raster::color_image read_image(const std::filesystem::path& path) {
+/// Throws format_error where the file is damaged, larger than the limits, or no picture that this
+/// build reads.
+inline raster::color_image read_image(const std::filesystem::path& path,
+                                      [[maybe_unused]] const limits& limits = {}) {
   switch (kind_of(path)) {
     case file_kind::png:
 #if defined(AIB_WITH_PNG)
-      return read_png_color(path);
+      return read_png_color(path, limits);
 #else
       throw format_error(path, "this build of aib reads no PNG; build it with libspng");
 #endif
     case file_kind::jpeg:
 #if defined(AIB_WITH_JPEG)
-      return read_jpeg(path);
+      return read_jpeg(path, limits);
 #else
       throw format_error(path, "this build of aib reads no JPEG; build it with libjpeg");
 #endif
@@ -54,10 +58,11 @@ inline raster::color_image read_image(const std::filesystem::path& path) {
 }
 
 /// Reads masks and labels: the stored numbers of a gray PNG of 1 to 16 bits or of a palette.
-/// Throws format_error for colours, and where the file is damaged.
-inline raster::label_image read_labels(const std::filesystem::path& path) {
+/// Throws format_error for colours, and where the file is damaged or larger than the limits.
+inline raster::label_image read_labels(const std::filesystem::path& path,
+                                       [[maybe_unused]] const limits& limits = {}) {
 #if defined(AIB_WITH_PNG)
-  if (kind_of(path) == file_kind::png) return read_png_gray(path);
+  if (kind_of(path) == file_kind::png) return read_png_gray(path, limits);
 #endif
   throw format_error(path, "a gray PNG or one with a palette expected");
 }

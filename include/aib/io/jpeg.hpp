@@ -4,12 +4,14 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/raster/color.hpp>
 
 #include <csetjmp>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <jpeglib.h>
 #include <string>
@@ -24,12 +26,21 @@ class jpeg_decoder {
   explicit jpeg_decoder(const std::string& bytes) {
     info_.err = jpeg_std_error(&errors_.base);
     errors_.base.error_exit = [](j_common_ptr info) {
-      auto* errors = reinterpret_cast<error_manager*>(info->err);
-      info->err->format_message(info, errors->text);
-      std::longjmp(errors->back, 1);
+      info->err->format_message(info, errors_of(info).text);
+      std::longjmp(errors_of(info).back, 1);
     };
-    errors_.base.output_message = [](j_common_ptr) {};
+    errors_.base.emit_message = [](j_common_ptr info, int level) {
+      if (level < 0)
+        info->err->error_exit(info);  // a warning: damage that libjpeg would paint over
+    };
     jpeg_create_decompress(&info_);
+    info_.progress = &monitor_;
+    monitor_.progress_monitor = [](j_common_ptr info) {
+      constexpr int most_scans = 100;  // of progressive pictures; a few bytes each make a bomb
+      if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= most_scans) return;
+      std::strcpy(errors_of(info).text, "more than 100 scans");
+      std::longjmp(errors_of(info).back, 1);
+    };
     bytes_ = reinterpret_cast<const unsigned char*>(bytes.data());
     n_bytes_ = bytes.size();
   }
@@ -55,14 +66,12 @@ class jpeg_decoder {
       jpeg_read_scanlines(&info_, &row, 1);
     }
     jpeg_finish_decompress(&info_);
-    return errors_.base.num_warnings == 0;
+    return true;
   }
 
   [[nodiscard]] std::size_t width() const { return info_.image_width; }
   [[nodiscard]] std::size_t height() const { return info_.image_height; }
-  [[nodiscard]] const char* error() const {
-    return errors_.text[0] != '\0' ? errors_.text : "damaged pixels";
-  }
+  [[nodiscard]] const char* error() const { return errors_.text; }
 
  private:
   struct error_manager {
@@ -70,8 +79,12 @@ class jpeg_decoder {
     std::jmp_buf back;
     char text[JMSG_LENGTH_MAX] = {};
   };
+  static error_manager& errors_of(j_common_ptr info) {
+    return *reinterpret_cast<error_manager*>(info->err);
+  }
   jpeg_decompress_struct info_ = {};
   error_manager errors_ = {};
+  jpeg_progress_mgr monitor_ = {};
   const unsigned char* bytes_ = nullptr;
   std::size_t n_bytes_ = 0;
 };
@@ -79,13 +92,16 @@ class jpeg_decoder {
 }  // namespace detail
 
 /// Reads a JPEG as 8-bit red, green, blue. Needs libjpeg (libjpeg-turbo).
-/// Throws format_error where the file is damaged or larger than 2^27 pixels.
-inline raster::color_image read_jpeg(const std::filesystem::path& path) {
+/// Throws format_error where the file is damaged or larger than the limits.
+inline raster::color_image read_jpeg(const std::filesystem::path& path, const limits& limits = {}) {
   const std::string bytes = read_file(path);
   detail::jpeg_decoder decoder(bytes);
   if (!decoder.read_header()) throw format_error(path, message("jpeg: ", decoder.error()));
-  if (decoder.width() * decoder.height() > std::size_t{1} << 27)
-    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(), " pixels"));
+  demand_pixels(path, "jpeg", decoder.width(), decoder.height(), limits);
+  // A block of 8 x 8 pixels takes a bit at least.
+  if (decoder.width() * decoder.height() / 512 > bytes.size())
+    throw format_error(path, message("jpeg: ", decoder.width(), "x", decoder.height(),
+                                     " pixels in a file of ", bytes.size(), " bytes"));
   raster::color_image image(decoder.width(), decoder.height());
   if (!decoder.read_pixels(image.data()->data()))
     throw format_error(path, message("jpeg: ", decoder.error()));

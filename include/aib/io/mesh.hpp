@@ -5,6 +5,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/axes.hpp>
 #include <aib/io/file_kind.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/obj.hpp>
 #include <aib/io/ply.hpp>
 #include <aib/io/ply_write.hpp>
@@ -21,6 +22,7 @@ namespace aib::io {
 
 struct mesh_options {
   up_axis up = up_axis::z;  ///< axis that points up in the file
+  io::limits limits = {};
 };
 
 /// Reads a mesh; the format is told from the content, then from the extension: PLY, OBJ, STL, GLB.
@@ -56,6 +58,8 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
 
 inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
   mesh::mesh result = detail::read_stored_mesh(path);
+  demand_points(path, "vertices", result.vertices.size(), options.limits);
+  demand_points(path, "triangles", result.triangles.size(), options.limits);
   turn_z_up(result, options.up);
   return result;
 }

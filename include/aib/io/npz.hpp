@@ -5,6 +5,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/npy.hpp>
 
 #include <zlib.h>
@@ -21,13 +22,6 @@
 #include <vector>
 
 namespace aib::io {
-
-struct npz_options {
-  /// A member that inflates to more than `max_ratio` times its stored size is refused where it
-  /// needs more than `max_bytes`: arrays hardly compress so well, bombs do.
-  double max_ratio = 100;
-  std::uint64_t max_bytes = std::uint64_t{1} << 30;
-};
 
 /// What an array is, without its elements.
 struct array_info {
@@ -51,7 +45,7 @@ struct npz_place {
 class npz_file {
  public:
   /// Throws io_error where the file cannot be opened, format_error where it is not a zip.
-  explicit npz_file(const std::filesystem::path& path, const npz_options& options = {});
+  explicit npz_file(const std::filesystem::path& path, const io::limits& limits = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
@@ -111,7 +105,7 @@ class npz_file {
   [[noreturn]] void fail(const member& m, std::string_view what) const;
 
   input_file file_;
-  npz_options options_;
+  io::limits limits_;
   std::vector<member> members_;
 };
 
@@ -174,8 +168,8 @@ inline std::uint32_t crc32_of(std::string_view bytes) {
 
 }  // namespace detail
 
-inline npz_file::npz_file(const std::filesystem::path& path, const npz_options& options)
-    : file_(path), options_(options) {
+inline npz_file::npz_file(const std::filesystem::path& path, const io::limits& limits)
+    : file_(path), limits_(limits) {
   const directory d = find_directory();
   const std::string bytes = part(d.offset, d.bytes);
   byte_reader in(bytes, path);
@@ -373,8 +367,7 @@ inline std::string npz_file::inflated(const member& m, std::uint64_t n) const {
   const std::uint64_t begin = data_offset(m);
   if (begin > file_.size() || m.packed > file_.size() - begin) fail(m, "cut off");
   const double ratio = static_cast<double>(m.size) / static_cast<double>(m.packed + 1);
-  if (m.size / best_ratio > m.packed ||
-      (ratio > options_.max_ratio && m.size > options_.max_bytes)) {
+  if (m.size / best_ratio > m.packed || (ratio > limits_.max_ratio && m.size > limits_.max_bytes)) {
     fail(m, message("inflates from ", m.packed, " to ", m.size, " bytes, which no array does"));
   }
   std::string out(static_cast<std::size_t>(n), '\0');

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/raster/color.hpp>
 #include <aib/raster/image.hpp>
 #include <aib/raster/view.hpp>
@@ -31,23 +32,26 @@ struct png_header {
   bool is_gray = false, has_palette = false, has_alpha = false;
 };
 
-/// Needs libspng. All PNG functions throw format_error where a file is damaged, is larger than 2^27
-/// pixels, or has not the pixels that are asked for.
-png_header read_png_header(const std::filesystem::path& path);
+/// Needs libspng. All PNG functions throw format_error where a file is damaged, is larger than the
+/// limits, or has not the pixels that are asked for.
+png_header read_png_header(const std::filesystem::path& path, const limits& limits = {});
 
 /// The stored numbers of a gray PNG of 1 to 16 bits, or the indices of a palette: labels, or depth
 /// of 16 bits. Refuses colours and transparency.
-raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path);
+raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                           const limits& limits = {});
 
 /// Any PNG as 8-bit red, green, blue; transparency is dropped.
-raster::color_image read_png_color(const std::filesystem::path& path);
+raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits = {});
 
 /// Any PNG as 8-bit red, green, blue, alpha.
-raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path);
+raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path,
+                                                         const limits& limits = {});
 
 /// Any PNG as 16-bit red, green, blue: the stored numbers of a file of 16 bits. Transparency is
 /// dropped.
-raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path);
+raster::image<std::array<std::uint16_t, 3>> read_png_color16(const std::filesystem::path& path,
+                                                             const limits& limits = {});
 
 /// Writes gray, rgb or rgba pixels of 8 or 16 bits, whichever the type is. Throws argument_error
 /// for an empty image, io_error where the file cannot be written.
@@ -63,7 +67,7 @@ struct free_spng {
 /// An opened PNG file: header checked, pixels not yet read.
 class png_decoder {
  public:
-  explicit png_decoder(const std::filesystem::path& path)
+  png_decoder(const std::filesystem::path& path, const limits& limits)
       : path_(path), bytes_(read_file(path)), context_(spng_ctx_new(0)) {
     constexpr std::uint32_t max_side = 1u << 20;
     constexpr std::size_t max_chunk = std::size_t{1} << 26;
@@ -72,9 +76,9 @@ class png_decoder {
     check(spng_set_chunk_limits(context_.get(), max_chunk, max_chunk));
     check(spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size()));
     check(spng_get_ihdr(context_.get(), &ihdr_));
+    demand_pixels(path, "png", ihdr_.width, ihdr_.height, limits);
     // Deflate expands at most 1032 times: more pixels than that were never in the file.
-    const std::uint64_t pixels = std::uint64_t{ihdr_.width} * ihdr_.height;
-    if (pixels > std::uint64_t{1} << 27 || pixels / 8 > 1100 * bytes_.size())
+    if (std::uint64_t{ihdr_.width} * ihdr_.height / 8 > 1100 * bytes_.size())
       fail(message(ihdr_.width, "x", ihdr_.height, " pixels in a file of ", bytes_.size(),
                    " bytes"));
   }
@@ -159,12 +163,13 @@ constexpr int png_color_type() {
 
 }  // namespace detail
 
-inline png_header read_png_header(const std::filesystem::path& path) {
-  return detail::png_decoder(path).header();
+inline png_header read_png_header(const std::filesystem::path& path, const limits& limits) {
+  return detail::png_decoder(path, limits).header();
 }
 
-inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                                  const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   const png_header header = decoder.header();
   if (!(header.is_gray || header.has_palette) || header.has_alpha)
     decoder.fail("gray pixels without transparency expected, found colours or transparency");
@@ -178,23 +183,24 @@ inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& p
   return detail::unpack_samples(packed, header);
 }
 
-inline raster::color_image read_png_color(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   raster::color_image image(decoder.header().width, decoder.header().height);
   decoder.decode(SPNG_FMT_RGB8, image.data(), 3 * image.size());
   return image;
 }
 
-inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+inline raster::image<std::array<std::uint8_t, 4>> read_png_rgba(const std::filesystem::path& path,
+                                                                const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   raster::image<std::array<std::uint8_t, 4>> image(decoder.header().width, decoder.header().height);
   decoder.decode(SPNG_FMT_RGBA8, image.data(), 4 * image.size());
   return image;
 }
 
 inline raster::image<std::array<std::uint16_t, 3>> read_png_color16(
-    const std::filesystem::path& path) {
-  detail::png_decoder decoder(path);
+    const std::filesystem::path& path, const limits& limits) {
+  detail::png_decoder decoder(path, limits);
   const png_header header = decoder.header();
   std::vector<std::array<std::uint16_t, 4>> pixels(header.width * header.height);
   decoder.decode(SPNG_FMT_RGBA16, pixels.data(), 8 * pixels.size());

@@ -105,9 +105,10 @@ function io.write_trajectory(path, trajectory, options) end
 function io.write_waypoints(path, trajectory, options) end
 
 ---An array of an NPY file, or of an NPZ file by its key (not needed where there is one alone).
----Pickled objects are never loaded.
+---Pickled objects are never loaded. An array that inflates more than max_ratio (100) times is refused
+---where it needs more than max_bytes (2^30).
 ---@param path string
----@param options? { key?: string }
+---@param options? { key?: string, max_ratio?: number, max_bytes?: integer }
 ---@return aib.Array
 function io.read_array(path, options) end
 
