@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Errors with a kind, as the library raises them: "argument", "format", "io", "undefined", "stopped", "internal", or
+--- Errors with a kind, as the library raises them: "argument", "format", "io", "output", "undefined", "stopped", "internal", or
 --- "script" for errors of Lua code.
 local aib = require "aib"
 

@@ -62,7 +62,7 @@ function read.integer(text)
 end
 
 function read.path(text)
-  if text == "" or text:find("\0", 1, true) then return nil, "a path expected" end
+  if text == "" then return nil, "a path expected" end
   return text
 end
 read.file, read.folder = read.path, read.path

@@ -107,31 +107,26 @@ local function explain(self, caught)
     return exit.usage
   end
   local code = exit_of_kind[failure.kind(caught.value)]
-  local needs_trace = not code and not failure.is_memory(caught.value)
+  local needs_trace = not code and not failure.is_memory(caught.value) and failure.kind(caught.value) ~= "output"
   print_error(needs_trace and caught.trace or self.name .. ": " .. failure.message(caught.value))
   return code or exit.script
 end
 
---- Runs the protocol as a program. Returns the exit code: 0 ok, 1 the script failed, 2 the command line is not
---- understood, 3 an input file is bad, 130 interrupted.
+--- Runs the protocol as a program. Returns the exit code: 0 ok, 1 it failed or its results cannot be written, 2 the
+--- command line is not understood, 3 an input file is bad, 130 interrupted.
 function protocol:main(arguments)
-  local call, report
+  local call
   local ok, caught = xpcall(function()
     call = command_line.parse(self, arguments)
     if call.quiet then progress.silence() end
     if call.threads then aib.system.use_threads(call.threads) end
-    if call.threads then aib.system.use_threads(call.threads) end
-    if not call.help then report = self:run(call.inputs, { draw = call.outputs.html ~= nil }) end
+    if call.help then
+      io.stdout:write(command_line.help(self))
+    else
+      command_line.show(self:run(call.inputs, { draw = call.outputs.html ~= nil }), call)
+    end
   end, traced)
-  if not ok then return explain(self, caught) end
-  if call.help then
-    io.stdout:write(command_line.help(self))
-    return exit.ok
-  end
-  ok, caught = xpcall(command_line.show, traced, report, call)
-  if ok then return exit.ok end
-  explain(self, caught)
-  return exit.script
+  return ok and exit.ok or explain(self, caught)
 end
 
 --- Makes a protocol; the result of the script that declares it.

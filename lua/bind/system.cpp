@@ -46,7 +46,7 @@ int descriptor_of(const std::string& stream) {
 
 error_kind kind_named(const std::string& name) {
   using enum error_kind;
-  for (const error_kind kind : {argument, format, io, undefined, stopped, internal}) {
+  for (const error_kind kind : {argument, format, io, output, undefined, stopped, internal}) {
     if (name == name_of(kind)) return kind;
   }
   throw argument_error("aib.system.remember: no kind of error is called '" + name + "'");
@@ -77,7 +77,7 @@ void bind_files(module& system) {
                 [](const fs::path& path) {
                   std::error_code error;
                   fs::create_directories(path, error);
-                  if (error) throw io_error(path, message("cannot make it: ", error.message()));
+                  if (error) throw output_error(path, message("cannot make it: ", error.message()));
                 })
       // Tells a file that was not touched without reading it: size and time of the last change.
       .function("status", {"path"},

@@ -18,8 +18,8 @@ namespace {
 
 using bind::error_kind;
 
-/// Error handler: mistakes of a script get a trace; a bad file, and a lack of memory, are said in
-/// their sentence alone.
+/// Error handler: mistakes of a script get a trace; a bad file, one that cannot be written and a
+/// lack of memory are said in their sentence alone.
 int explain(lua_State* state) {
   if (lua_type(state, 1) != LUA_TSTRING) {
     luaL_tolstring(state, 1, nullptr);
@@ -27,7 +27,8 @@ int explain(lua_State* state) {
   }
   const std::string text = bind::value<std::string>::get(state, 1);
   const error_kind kind = bind::session::of(state).kind_of(text);
-  if (kind == error_kind::io || kind == error_kind::format || kind == error_kind::stopped) return 1;
+  using enum error_kind;
+  if (kind == io || kind == output || kind == format || kind == stopped) return 1;
   if (text.ends_with("not enough memory")) return 1;
   luaL_traceback(state, state, lua_tostring(state, 1), 1);
   return 1;

@@ -184,7 +184,8 @@ For scripts that one did not write (Linux 5.13 or later):
 Protocols are found in the working folder, the folders of AIB_PATH (separated by colons), and the
 installed ones. `aib-lua PROTOCOL --help` tells its inputs.
 
-exit status: 0 ok, 1 script or internal error, 2 usage, 3 an input file is bad, 130 interrupted
+exit status: 0 ok, 1 script or internal error, or a file cannot be written, 2 usage,
+3 an input file is bad, 130 interrupted
 )";
 }
 

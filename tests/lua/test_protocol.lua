@@ -131,6 +131,21 @@ return aib.test {
     _, code, err = values_of({ dir = { kind = "folder" } }, { "/no/such" })
     t:equal(code, 3)
     t:equal(err, "demo: /no/such: no such folder\n")
+    _, code, err = values_of({ dir = { kind = "folder" } }, { arg[0] })
+    t:equal({ code, err }, { 3, ("demo: %s: a folder expected, found a file\n"):format(arg[0]) })
+  end,
+
+  ["a result that cannot be written is no bad input"] = function(t)
+    local says <const> = "/dev/full: cannot write: No space left on device"
+    local ok, message = pcall(aib.system.write_text, "/dev/full", "x")
+    t:check(not ok)
+    t:contains(message, says)
+    t:equal(aib.error_kind(message), "output")
+    local code, _, err = call(protocol_with {}, { "--quiet", "--json", "/dev/full" })
+    t:equal({ code, err }, { 1, ("demo: %s\n"):format(says) })
+    local protocol = protocol_with({}, function() aib.system.write_text("/dev/full", "x") end)
+    code, _, err = call(protocol, { "--quiet" })
+    t:equal({ code, err }, { 1, ("demo: %s\n"):format(says) })
   end,
 
   ["help lists inputs, defaults, choices and result files"] = function(t)

@@ -20,11 +20,17 @@ class error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A file cannot be opened, read or written.
+/// A file cannot be opened or read.
 class io_error : public error {
  public:
   io_error(const std::filesystem::path& path, std::string_view what)
       : error(message(path.string(), ": ", what)) {}
+};
+
+/// A file cannot be written: not the input is at fault.
+class output_error : public io_error {
+ public:
+  using io_error::io_error;
 };
 
 /// One-based line of a text file.

@@ -177,7 +177,7 @@ inline void write_colmap(const std::filesystem::path& folder,
   colmap::detail::check_writable(model);
   std::error_code code;
   std::filesystem::create_directories(folder, code);
-  if (code) throw io_error(folder, message("cannot create: ", code.message()));
+  if (code) throw output_error(folder, message("cannot create: ", code.message()));
   colmap::detail::write_cameras(folder, model, encoding);
   colmap::detail::write_images(folder, model, encoding);
   colmap::detail::write_points(folder, model, encoding);

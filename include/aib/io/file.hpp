@@ -151,7 +151,7 @@ inline output_file::output_file(std::filesystem::path path)
     open_beside();
     return;
   }
-  if (S_ISDIR(status.st_mode)) throw io_error(path_, "a file expected, found a folder");
+  if (S_ISDIR(status.st_mode)) throw output_error(path_, "a file expected, found a folder");
   if (::access(path_.c_str(), W_OK) != 0) fail("write");
   if (!S_ISREG(status.st_mode) || path_.string().starts_with("/dev/")) {
     file_ = std::fopen(path_.c_str(), "abe");
@@ -181,7 +181,7 @@ inline output_file::~output_file() {
 }
 
 inline void output_file::fail(const char* doing) const {
-  throw io_error(path_, message("cannot ", doing, ": ", std::strerror(errno)));
+  throw output_error(path_, message("cannot ", doing, ": ", std::strerror(errno)));
 }
 
 inline void output_file::write(const void* data, std::size_t n) {

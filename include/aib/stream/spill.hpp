@@ -89,7 +89,7 @@ requires(std::is_trivially_copyable_v<T>) class spill {
   }
 
   [[noreturn]] void fail(const char* what) const {
-    throw io_error(folder_, message(what, ": ", std::strerror(errno)));
+    throw output_error(folder_, message(what, ": ", std::strerror(errno)));
   }
 
   std::filesystem::path folder_;

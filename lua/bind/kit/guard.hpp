@@ -27,6 +27,8 @@ template <class Body>
 int guard(lua_State* state, Body&& body) {
   try {
     return body();
+  } catch (const output_error& e) {
+    push_error(state, error_kind::output, e.what());
   } catch (const io_error& e) {
     push_error(state, error_kind::io, e.what());
   } catch (const format_error& e) {

@@ -17,6 +17,8 @@ const char* name_of(error_kind kind) {
       return "format";
     case error_kind::io:
       return "io";
+    case error_kind::output:
+      return "output";
     case error_kind::undefined:
       return "undefined";
     case error_kind::stopped:

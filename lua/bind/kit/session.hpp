@@ -24,9 +24,10 @@ struct signature {
 };
 
 /// What an error was, beside its message. Scripts ask for it with `aib.error_kind(message)`.
-enum class error_kind { script, argument, format, io, undefined, stopped, internal };
+enum class error_kind { script, argument, format, io, output, undefined, stopped, internal };
 
-/// "argument", "format", "io", "undefined", "stopped", "internal"; "script" for errors of Lua code.
+/// "argument", "format", "io", "output", "undefined", "stopped", "internal"; "script" for errors of
+/// Lua code.
 const char* name_of(error_kind kind);
 
 /// State of one shell: what all calls share. One for a Lua state; lives longer than it.

@@ -7,11 +7,11 @@
 ---@field instruction_set "avx512"|"avx2"|"sse2"|"plain"  # what the binary was built for
 local aib = {}
 
----Kind of a caught error, from its message: "argument" (the call is wrong), "io" (a file cannot be read or written),
----"format" (its content is wrong), "undefined" (a metric over nothing), "stopped" (Ctrl-C), "internal" (a bug of aib),
+---Kind of a caught error, from its message: "argument" (the call is wrong), "io" (a file cannot be read),
+---"output" (one cannot be written), "format" (its content is wrong), "undefined" (a metric over nothing), "stopped" (Ctrl-C), "internal" (a bug of aib),
 ---"script" (any error of Lua code).
 ---@param message any  # what pcall gave
----@return "argument"|"io"|"format"|"undefined"|"stopped"|"internal"|"script" kind
+---@return "argument"|"io"|"output"|"format"|"undefined"|"stopped"|"internal"|"script" kind
 function aib.error_kind(message) end
 
 ---Name of a value's type: "cloud" of a cloud, else what Lua's own type gives.
