@@ -79,51 +79,65 @@ local function shared_area(a, b)
   return area(polygon)
 end
 
---- Unit normal with its first significant number positive, and the distance of the plane from the origin.
-local function plane_of(a, b, c)
-  local n = cross(sub(b, a), sub(c, a))
-  local length = vector.length(n)
+--- Unit normal of a triangle with its first significant number positive, and the distance of its plane from the origin;
+--- nil without an area.
+local function plane_of(scene, triangle)
+  local t, v = scene.triangles, scene.vertices
+  local i, j, k = 3 * t[3 * triangle - 2], 3 * t[3 * triangle - 1], 3 * t[3 * triangle]
+  local ax, ay, az = v[i + 1], v[i + 2], v[i + 3]
+  local bx, by, bz = v[j + 1] - ax, v[j + 2] - ay, v[j + 3] - az
+  local cx, cy, cz = v[k + 1] - ax, v[k + 2] - ay, v[k + 3] - az
+  local x, y, z = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
+  local length = math.sqrt(x * x + y * y + z * z)
   if length < 1e-9 then return nil end
-  n = vector.mul(n, 1 / length)
-  for axis = 1, 3 do
-    if math.abs(n[axis]) > 1e-6 then
-      if n[axis] < 0 then n = vector.mul(n, -1) end
-      break
-    end
-  end
-  return n, dot(n, a)
+  local first = math.abs(x) > 1e-6 * length and x or math.abs(y) > 1e-6 * length and y or z
+  if first < 0 then length = -length end
+  x, y, z = x / length, y / length, z / length
+  return { x, y, z }, x * ax + y * ay + z * az
 end
 
---- Triangle in its plane, counter-clockwise, with its bounds.
-local function flattened(a, b, c, normal)
-  local u = math.abs(normal[3]) > 0.9 and { 1, 0, 0 } or { 0, 0, 1 }
-  local x = vector.unit(cross(u, normal))
-  local y = cross(normal, x)
+--- Two directions in a plane, square to each other.
+local function axes_in(normal)
+  local x = vector.unit(cross(math.abs(normal[3]) > 0.9 and { 1, 0, 0 } or { 0, 0, 1 }, normal))
+  return { x, cross(normal, x) }
+end
+
+--- Triangle in the axes of its plane, counter-clockwise, with its bounds.
+local function flattened(scene, triangle, axes)
+  local x, y = axes[1], axes[2]
   local flat = {}
-  for k, p in ipairs { a, b, c } do flat[k] = { dot(x, p), dot(y, p) } end
+  for k = 1, 3 do
+    local p = corner(scene, triangle, k)
+    flat[k] = { dot(x, p), dot(y, p) }
+  end
   if area(flat) < 0 then flat[2], flat[3] = flat[3], flat[2] end
-  flat.low = math.min(flat[1][1], flat[2][1], flat[3][1])
-  flat.high = math.max(flat[1][1], flat[2][1], flat[3][1])
-  flat.bottom = math.min(flat[1][2], flat[2][2], flat[3][2])
-  flat.top = math.max(flat[1][2], flat[2][2], flat[3][2])
+  local a, b, c = flat[1], flat[2], flat[3]
+  flat.low, flat.high = math.min(a[1], b[1], c[1]), math.max(a[1], b[1], c[1])
+  flat.bottom, flat.top = math.min(a[2], b[2], c[2]), math.max(a[2], b[2], c[2])
   return flat
+end
+
+--- A number for a direction, equal for those that agree to four decimals.
+local function direction_key(normal)
+  local key = 0
+  for axis = 1, 3 do key = key << 15 | math.floor(10000 * normal[axis] + 10000.5) end
+  return key
 end
 
 --- Triangles by their plane; a plane within `tolerance` of the border of its cell is in both cells.
 local function by_plane(scene, tolerance)
-  local planes = {}
+  local planes, axes = {}, {}
   for t = 1, #scene.labels do
-    local a, b, c = corners(scene, t)
-    local normal, offset = plane_of(a, b, c)
+    local normal, offset = plane_of(scene, t)
     if normal then
-      local flat = flattened(a, b, c, normal)
+      local direction = direction_key(normal)
+      axes[direction] = axes[direction] or axes_in(normal)
+      local flat = flattened(scene, t, axes[direction])
       flat.triangle, flat.offset = t, offset
-      local direction = ("%.4f %.4f %.4f"):format(normal[1] + 0.0, normal[2] + 0.0, normal[3] + 0.0):gsub("%-0%.0000",
-        "0.0000")
       local cell = 10 * tolerance
       local first, last = math.floor((offset - tolerance) / cell), math.floor((offset + tolerance) / cell)
       for k = first, last do
-        local key = direction .. " " .. k
+        local key = direction << 19 | k & 0x7ffff
         planes[key] = planes[key] or {}
         table.insert(planes[key], flat)
       end
@@ -148,10 +162,10 @@ function M.overlaps(scene, tolerance)
       for j = i + 1, #plane do
         local b = plane[j]
         if b.low >= a.high then break end
-        local first, second = math.min(a.triangle, b.triangle), math.max(a.triangle, b.triangle)
-        local pair = solid_of[first] << 32 | solid_of[second]
-        if not seen[pair] and b.bottom < a.top and a.bottom < b.top and math.abs(a.offset - b.offset) < tolerance then
-          local shared = shared_area(a, b)
+        if b.bottom < a.top and a.bottom < b.top and math.abs(a.offset - b.offset) < tolerance then
+          local first, second = math.min(a.triangle, b.triangle), math.max(a.triangle, b.triangle)
+          local pair = solid_of[first] << 32 | solid_of[second]
+          local shared = seen[pair] and 0 or shared_area(a, b)
           if shared > 1e-6 then
             seen[pair] = true
             found[#found + 1] = {
