@@ -8,41 +8,10 @@
 local aib = require "aib"
 local batches = require "aib.evaluation.batches"
 local depth = require "aib.evaluation.depth"
+local drawings = require "aib.evaluation.drawings"
 local points = require "aib.evaluation.points"
-local poses = require "aib.evaluation.poses"
-
---- How a method's depth and points come into the frame of the truth: { transform =, scale =, model = }; without scale
---- where that is not known.
-local function frame_of(unit, models, scored)
-  local model = scored
-  for _, other in ipairs(models) do
-    if other.name == unit.result.model then model = other end
-  end
-  local own = unit.method.parameters == "estimated"
-  if (unit.result.frame or own and "method" or "reference") == "reference" then return { scale = 1, model = model } end
-  local alignment = model and model.alignment
-  if not alignment then return { model = model } end
-  return { transform = alignment.transform, scale = alignment.transform.scale, model = model, how = model.how }
-end
-
-local function evaluate(unit, truth, files, input, cell, frames)
-  if unit.result.output then
-    return batches.evaluate_output(unit, truth, files, input, cell, frames)
-  end
-  local models = poses.models_of(unit.result, files)
-  local scored = aib.submodels.largest(models)
-  if unit.method.parameters == "ground truth" then
-    cell:add("pose.auc30", nil, { better = "higher", note = "the poses are given" })
-  elseif scored then
-    poses.score_models(models, truth, input, cell)
-    batches.score_in_batches(scored.trajectory, unit.method.name, truth, input, cell)
-  end
-  local frame = frame_of(unit, models, scored)
-  if unit.result.depth then depth.score_depth(unit, truth, files, frame, input, cell, frames) end
-  if unit.result.cloud and points.has_surface(truth, cell) then
-    points.score_cloud(unit, truth, files, frame, input, cell)
-  end
-end
+local suggest = require "aib.suggest"
+local unit_of = require "aib.evaluation.unit"
 
 local function has_record(report, name)
   for _, record in ipairs(report:records()) do
@@ -92,57 +61,143 @@ local function state_conventions(report, input)
   report:convention("cloud.f1_distance", "harmonic mean of accuracy and completeness, a distance")
 end
 
---- Changes of depth errors over the conditions of each scene, for each method that has frames in several.
-local function add_sensitivity(report, parts, rule)
+--- What changes with the conditions of a scene, where it is told of single images: the same image under each is a pair.
+--- AUC is of pairs of images, chamfer distance and F1 are of points, so that nothing in them is paired.
+local paired <const> = {
+  { "srmse", "depth.srmse" }, { "coverage", "depth.coverage" }, { "abs_rel", "depth.abs_rel" },
+  { "delta1", "depth.delta1" }, { "ape", "pose.ape", unit = "m" }, { "registration_rate", "pose.registered" },
+  { "focal_mre", "camera.focal_error" },
+}
+
+--- Changes of every metric that is paired over the conditions of one scene for one method.
+local function add_changes(cell, levels, rule)
+  local told = {}  -- by contrast: a metric may be there under some conditions alone
+  for _, metric in ipairs(paired) do
+    local list = {}
+    for _, level in ipairs(levels) do
+      local frames = level.frames[metric[2]]
+      list[#list + 1] = frames and { condition = level.condition, names = frames.names, values = frames.values }
+    end
+    if #list > 1 then
+      local contrast = ("%s to %s"):format(list[1].condition, list[#list].condition)
+      told[contrast] = told[contrast] or {}
+      table.insert(told[contrast], aib.sensitivity.add(cell:within { contrast = contrast }, metric[1], list,
+        { rule = metric[2]:find "^depth" and rule or nil }, metric.unit))
+    end
+  end
+  for _, contrast in ipairs(suggest.keys(told)) do
+    cell:within({ contrast = contrast }):note(table.concat(told[contrast], "; "))
+  end
+end
+
+--- Changes over the conditions of each scene, for each method that has images in several.
+local function add_sensitivity(report, series, rule)
   local order, levels = {}, {}
-  for _, part in ipairs(parts) do
-    local frames, group = part.frames["depth.srmse"], part.group
-    if frames and group.condition then
+  for _, one in ipairs(series) do
+    local group = one.group
+    if group.condition then
       local id = group.scene .. "\0" .. group.method
       if not levels[id] then order[#order + 1], levels[id] = id, {} end
-      table.insert(levels[id], { condition = group.condition, names = frames.names, values = frames.values })
+      table.insert(levels[id], { condition = group.condition, frames = one.frames })
     end
   end
   for _, id in ipairs(order) do
     local scene, method = id:match "^(.*)%z(.*)$"
-    local list = levels[id]
-    local contrast = ("%s to %s"):format(list[1].condition, list[#list].condition)
-    aib.sensitivity.add(report:within { scene = scene, method = method, contrast = contrast }, "srmse", list,
-      { rule = rule })
+    add_changes(report:within { scene = scene, method = method }, levels[id], rule)
   end
 end
 
 --- Numbers of frames, for JSON.
-local function frame_lists(parts)
+local function frame_lists(series)
   local lists = aib.json.list()
-  for _, part in ipairs(parts) do
-    for metric, frames in pairs(part.frames) do
-      lists[#lists + 1] = { metric = metric, group = part.group, names = frames.names, values = frames.values }
+  for _, one in ipairs(series) do
+    for _, metric in ipairs(suggest.keys(one.frames)) do
+      local frames = one.frames[metric]
+      lists[#lists + 1] = { metric = metric, group = one.group, names = frames.names, values = frames.values }
     end
   end
   return lists
 end
 
---- Shards bring numbers of frames and no pictures: those are drawn then.
-local function draw_merged(report, parts)
-  if not report:draws() or #report.store.views > 0 then return end
-  for _, part in ipairs(parts) do
-    for metric, frames in pairs(part.frames) do
-      report:within(part.group):timeline { title = metric .. " along the flight", y = { label = metric },
-        frames = frames.names, values = frames.values }
+--- The rows of all parts of a unit, by series: their lists follow each other.
+local function joined_rows(unit)
+  local series = {}
+  for _, part in ipairs(unit) do
+    for k, list in ipairs(part.rows) do
+      series[k] = series[k] or { method = list.method, how = list.how, n_expected = list.n_expected, rows = {} }
+      table.move(list.rows, 1, #list.rows, #series[k].rows + 1, series[k].rows)
     end
   end
+  return series
+end
+
+--- Adds what all parts of a unit tell together. Returns its numbers of frames: a list of { group =, frames = }, first
+--- those of the method, then those of it in batches.
+local function add_unit(unit, input, report, files)
+  local found = { { group = unit[1].group, frames = {} } }
+  for _, part in ipairs(unit) do
+    aib.units.absorb(report, files, part)
+    for metric, frames in pairs(part.frames) do found[1].frames[metric] = frames end
+  end
+  if report.store.shard then return found end  -- it may not have all parts of the unit
+  drawings.pose_series(report:within(unit[1].group), found[1].frames["pose.ape"])
+  for _, series in ipairs(joined_rows(unit)) do
+    local cell = report:within(unit[1].group):within { method = series.method }
+    if #series.rows > 0 then
+      local one = found[1]
+      if series.method then
+        one = { group = cell.group, frames = {} }
+        found[#found + 1] = one
+      end
+      for metric, frames in pairs(depth.add(series, input, cell)) do one.frames[metric] = frames end
+    end
+  end
+  return found
 end
 
 --- What follows from all units together, in this run or in merged shards.
 local function finish(input, report, parts, files)
+  local series = {}
+  for _, unit in ipairs(aib.units.grouped(parts)) do
+    local found = add_unit(unit, input, report, files)
+    table.move(found, 1, #found, #series + 1, series)
+  end
   add_tables(report, input)
   state_conventions(report, input)
-  add_sensitivity(report, parts, input.rule)
-  draw_merged(report, parts)
-  if input.per_frame then report.store.frames = frame_lists(parts) end
+  if not report.store.shard then add_sensitivity(report, series, input.rule) end
+  if input.per_frame then report.store.frames = frame_lists(series) end
   for label, print in pairs(files:sources()) do report:source(label, print) end
   aib.consistency.check_report(report)
+end
+
+--- The scenes of a run, the last one kept: `views` has the images, whose files every part depends on, `surface` the
+--- mesh or the points as well.
+local function scene_reader(input)
+  local spec, views, surface
+  local function open(scene) return aib.scene.open(scene, aib.files.new(input.benchmark)) end
+  return function(scene, needs_surface)
+    if spec ~= scene then
+      spec, views, surface = scene, open(scene), nil
+      assert(views.trajectory)  -- is among its files from now on
+    end
+    if needs_surface and not surface then
+      surface = open(scene)
+      surface.reference, surface.floor = points.reference_points(surface, input)
+    end
+    return views, surface
+  end
+end
+
+--- What a unit's parts share, the last one kept.
+local function unit_reader(input)
+  local last, opened, files
+  return function(unit, views)
+    if last ~= unit then
+      last, opened, files = unit, nil, aib.files.new(input.benchmark)
+      opened = unit_of.open(unit, views, files, input)
+    end
+    return opened, files
+  end
 end
 
 return aib.protocol {
@@ -169,8 +224,9 @@ return aib.protocol {
       help = "points of depth maps are kept above it, by the method's rule" },
     stride = { kind = "integer", default = 2, min = 1,
       help = "every so many rows and columns of depth maps give points" },
-    results = { kind = "path", default = "", help = "folder that keeps finished units, which are reused" },
-    shard = { kind = "path", default = "", help = "INDEX/COUNT: evaluate a part of the units, for aib-lua merge" },
+    results = { kind = "path", default = "", help = "folder that keeps finished parts, which are reused" },
+    shard = { kind = "path", default = "",
+      help = "INDEX/COUNT: evaluate a part of the units and images, for aib-lua merge" },
     details = { kind = "flag",
       help = "also shares within 1, 2, 5 ground sampling distances, depth by strata, points by label" },
     per_frame = { kind = "flag", help = "keep the numbers of frames in the JSON, for paired comparisons" },
@@ -182,7 +238,7 @@ return aib.protocol {
   run = function(input, report)
     local benchmark = aib.benchmark.open(input.benchmark)
     batches.check_batches(input, benchmark)
-    local truth
+    local scene_of, opened_of = scene_reader(input), unit_reader(input)
     local parts = aib.units.run {
       report = report, files = benchmark.files, units = benchmark.units,
       results = input.results ~= "" and input.results or nil, shard = input.shard,
@@ -192,16 +248,21 @@ return aib.protocol {
         return { scene = unit.scene, condition = unit.condition, result = unit.result, batch = input.batch,
           method = { name = unit.method.name, parameters = unit.method.parameters } }
       end,
-      evaluate = function(unit, part)
-        if not truth or truth.spec ~= unit.scene then
-          truth = aib.scene.open(unit.scene, aib.files.new(input.benchmark))
-          truth.reference, truth.floor = points.reference_points(truth, input)
+      n_images = function(unit)
+        local has_maps = unit.result and (unit.result.depth or unit.result.output)
+        return has_maps and #scene_of(unit.scene).names or 0
+      end,
+      evaluate = function(unit, part, range)
+        if not unit.result then return {} end
+        local own = aib.files.new(input.benchmark)
+        local views, surface = scene_of(unit.scene, not range)
+        local opened, files = opened_of(unit, views)
+        if range then
+          part.rows = unit_of.rows(opened, range, views, input, own)
+          return { views.files, files, own }
         end
-        local files = aib.files.new(input.benchmark)
-        if unit.result then
-          evaluate(unit, truth, files, input, part.report:within(unit.group), part.frames)
-        end
-        return { truth.files, files }
+        unit_of.score(unit, opened, surface, own, input, part.report:within(unit.group), part.frames)
+        return { views.files, surface.files, files, own }
       end,
     }
     finish(input, report, parts, benchmark.files)

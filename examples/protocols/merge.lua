@@ -36,8 +36,6 @@ return aib.protocol {
     local protocol = protocol_of(first, shards[1].path)
     report.name, report.title, report.cite = protocol.name, protocol.title, protocol.cite
     report.store.inputs = first.inputs
-    local files = aib.files.new "."
-    for _, part in ipairs(parts) do aib.units.absorb(report, files, part) end
-    protocol.finish(first.inputs, report, parts, files)
+    protocol.finish(first.inputs, report, parts, aib.files.new ".")
   end,
 }

@@ -168,7 +168,7 @@ function M.points(batch, options)
     elseif pose.is_registered and batch.depth and batch.cameras then
       how.pixel_offset = options.pixel_offset
       local depth <close> = batch.depth(i)
-      points, counts = aib.sample.unproject(depth, batch.cameras[name], pose, how)
+      if depth then points, counts = aib.sample.unproject(depth, batch.cameras[name], pose, how) end
     end
     if points then
       clouds[#clouds + 1] = points

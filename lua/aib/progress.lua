@@ -54,6 +54,12 @@ function progress:close()
 end
 progress.__close = progress.close
 
+--- Says a sentence that stays.
+function progress:say(text)
+  if self.silent then return end
+  self.write((self.redraws and "\r\27[K" or "") .. text .. "\n")
+end
+
 local M = {
   --- Whether nothing is to be shown (--quiet).
   quiet = false,

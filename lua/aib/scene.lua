@@ -79,12 +79,12 @@ function M.cropped(scene, cloud)
 end
 
 --- Opens a scene: names, trajectory, cameras, mesh, points, depth_names are read at their first use; depth(name) reads
---- one depth map. `files` (aib.files) remembers what was read.
+--- one depth map. `files` (aib.files) remembers what was read; depth(name, files) remembers it there instead.
 function M.open(spec, files)
   if type(spec) == "string" then spec = { folder = spec, poses = "transforms.json", depth = "depth/{stem}.exr" } end
   suggest.check_keys("aib.scene.open", spec, fields, 2)
   local scene = { spec = spec, files = files or aib.files.new(spec.folder or ".") }
-  function scene.depth(name) return aib.io.read_depth(scene.files:frame(spec.depth, name)) end
+  function scene.depth(name, to) return aib.io.read_depth((to or scene.files):frame(spec.depth, name)) end
   return setmetatable(scene, { __index = function(self, key)
     local reader = readers[key]
     if not reader then return nil end

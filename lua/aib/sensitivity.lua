@@ -63,15 +63,15 @@ function M.of(levels, options)
   }
 end
 
---- Adds records and a sentence of one metric to a report; `depends` is what its records depend on, as their options.
-function M.add(report, metric, levels, depends)
+--- Adds the records of one metric to a report and returns what they say; nil where nothing is paired. `depends` is what
+--- the records depend on, as their options; `unit` that of the metric.
+function M.add(report, metric, levels, depends, unit)
   local found = M.of(levels)
-  if not found then return end
-  local first, last = levels[1].condition, levels[#levels].condition
-  local how = { from = first, to = last, level = 0.95 }
+  if not found then return nil end
+  local how = { from = levels[1].condition, to = levels[#levels].condition, level = 0.95 }
   for key, value in pairs(depends or {}) do how[key] = value end
   local function add(name, value) report:add(("sensitivity.%s_%s"):format(metric, name), value, {
-    n = found.n, options = how, convention = "paired frames, block bootstrap",
+    unit = unit, n = found.n, options = how, convention = "paired frames, block bootstrap",
   }) end
   for _, what in ipairs { "change", "slope" } do
     add(what, found[what].mean)
@@ -80,8 +80,8 @@ function M.add(report, metric, levels, depends)
   end
   add("within", found.within)
   local sure = found.change.low > 0 and "rises" or found.change.high < 0 and "falls" or "shows no sure change"
-  report:note(("%s from %s to %s %s: %.3g (%.3g to %.3g); insensitive within %.3g"):format(metric, first, last, sure,
-    found.change.mean, found.change.low, found.change.high, found.within))
+  return ("%s %s: %.3g (%.3g to %.3g), insensitive within %.3g"):format(metric, sure, found.change.mean,
+    found.change.low, found.change.high, found.within)
 end
 
 return M

@@ -1,19 +1,26 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Long evaluations in units of work: finished ones are kept in a folder and reused while inputs, options and version
---- are unchanged; every sixteenth can be made by another machine; what they found is put together in their order, so
---- that one run, an interrupted one and merged shards give the same bytes.
+--- Long evaluations in parts: of each unit of work one part for what needs all of its images, and one for every 32
+--- images, whose numbers are of each image alone. Finished parts are kept in a folder and reused while inputs, options
+--- and version are unchanged; every sixteenth can be made by another machine; what they found is put together in their
+--- order, so that one run, an interrupted one and merged shards give the same bytes.
 ---
 ---   local parts = aib.units.run {
 ---     report = report, files = files, units = units, results = input.results, shard = input.shard,
 ---     name = function(unit) return ... end,           -- for people
 ---     group = function(unit) return table end,        -- of its records
 ---     describe = function(unit) return table end,     -- what it depends on besides files, as JSON
----     evaluate = function(unit, part) ... return list of aib.files that it read end,
+---     n_images = function(unit) return number end,    -- that are evaluated one by one, 0 of none
+---     evaluate = function(unit, part, range) ... return list of aib.files that it read end,
 ---   }
+---   for _, unit in ipairs(aib.units.grouped(parts)) do
+---     for _, part in ipairs(unit) do aib.units.absorb(report, files, part) end
+---   end
 ---
---- part.report takes records and notes; part.frames.KEY = { names = {...}, values = {...} } keeps numbers of frames.
+--- `range` = { first =, last = } is that of the images, nil for what needs all of them. part.report takes records and
+--- notes; part.frames.KEY = { names = {...}, values = {...} } keeps numbers of frames, part.rows a list of anything
+--- that is JSON.
 local aib = require "aib"
 local failure = require "aib.failure"
 local records_json = require "aib.report.records"
@@ -21,7 +28,8 @@ local suggest = require "aib.suggest"
 
 local M = {}
 
-local format_version <const> = 1
+local format_version <const> = 2
+local images_of_part <const> = 32
 
 --- The place of a shard: "3/16" -> 3, 16; 1, 1 without. Raises an error of usage.
 function M.shard_of(text)
@@ -34,21 +42,35 @@ function M.shard_of(text)
   return index, count
 end
 
---- What decides whether a kept unit is that of this run.
-local function key_of(job, unit)
+--- All parts in the order of one run.
+local function places_of(job)
+  local list = {}
+  for i, unit in ipairs(job.units) do
+    local name, n = job.name(unit), job.n_images(unit)
+    list[#list + 1] = { unit = unit, index = i, name = name }
+    for first = 1, n, images_of_part do
+      local range = { first = first, last = math.min(first + images_of_part - 1, n) }
+      list[#list + 1] = { unit = unit, index = i, range = range,
+        name = ("%s, images %d to %d"):format(name, range.first, range.last) }
+    end
+  end
+  return list
+end
+
+--- What decides whether a kept part is that of this run.
+local function key_of(job, place)
   return aib.system.sha256(aib.json.encode {
     format = format_version, version = aib.version, protocol = job.report.name, inputs = job.report.store.inputs,
-    unit = job.describe(unit), name = job.name(unit),
+    unit = job.describe(place.unit), name = place.name,
   })
 end
 
-local function path_of(job, unit)
-  local name = job.name(unit)
-  local readable = name:gsub("[^%w]+", "_"):sub(1, 60)
-  return ("%s/%s_%s.json"):format(job.results, readable, aib.system.sha256(name):sub(1, 8))
+local function path_of(job, place)
+  local readable = place.name:gsub("[^%w]+", "_"):sub(1, 60)
+  return ("%s/%s_%s"):format(job.results, readable, aib.system.sha256(place.name):sub(1, 8))
 end
 
---- The files that a unit read, with what tells whether they were touched.
+--- The files that a part read, with what tells whether they were touched.
 local function list_files(of)
   local list, seen = aib.json.list(), {}
   for _, files in ipairs(of) do
@@ -58,10 +80,8 @@ local function list_files(of)
         if not seen[id] then
           seen[id] = true
           local print = files.used[label][name]
-          list[#list + 1] = {
-            label = label, name = name, bytes = print.bytes, sha256 = print.sha256,
-            status = aib.system.status(files:path(name)),
-          }
+          list[#list + 1] = { label = label, name = name, files = print.files, bytes = print.bytes,
+            sha256 = print.sha256, status = print.status }
         end
       end
     end
@@ -69,78 +89,132 @@ local function list_files(of)
   return list
 end
 
-local function is_untouched(job, file)
-  local path = job.files:path(file.name)
-  return aib.system.is_file(path) and aib.system.status(path) == file.status
+local function read_json(path)
+  if not aib.system.is_file(path) then return nil end
+  local text = aib.system.read_text(path)
+  local ok, value = pcall(aib.json.decode, text, path)
+  return ok and type(value) == "table" and value or nil, text
 end
 
---- The kept part of a unit, nil where there is none, it is of another run, or a file of it was touched; or where a page
---- is to be drawn, whose geometry and pictures are not kept.
-local function kept(job, unit, key)
-  if not job.results or job.report:draws() then return nil end
-  local path = path_of(job, unit)
-  if not aib.system.is_file(path) then return nil end
-  local ok, part = pcall(function() return aib.json.decode(aib.system.read_text(path), path) end)
-  if not ok or type(part) ~= "table" or part.key ~= key then return nil end
+--- Whether no file of a part was touched; `statuses` are those that were looked at in this run.
+local function is_untouched(job, part, statuses)
   for _, file in ipairs(part.files) do
-    if not is_untouched(job, file) then return nil end
+    local path = job.files:path(file.name)
+    statuses[path] = statuses[path] or aib.files.status(path) or "none"
+    if statuses[path] ~= file.status then return false end
+  end
+  return true
+end
+
+--- Whether a page shows something of a part; a range of images has numbers alone.
+local function is_drawn(job, place) return job.report:draws() and not place.range end
+
+--- The kept part of a place, nil where there is none, it is of another run, or a file of it was touched. Where a page
+--- is to be drawn, with its views, which lie beside it.
+local function kept(job, place, key, statuses)
+  if not job.results then return nil end
+  local path = path_of(job, place)
+  local part, text = read_json(path .. ".json")
+  if not part or part.key ~= key or not is_untouched(job, part, statuses) then return nil end
+  if is_drawn(job, place) then
+    local page = read_json(path .. ".views.json")
+    if not page or page.part ~= aib.system.sha256(text) then return nil end
+    part.views = page.views
   end
   return part
 end
 
-local function new_part(job, unit, key)
-  local part = {
-    frames = {}, report = aib.report.new { name = job.report.name, version = job.report.version },
+--- Evaluates a part. What it gives has gone through its text, as a kept one has: they are the same to the last bit.
+local function made(job, place, key)
+  local part = { frames = {}, rows = aib.json.list() }
+  part.report = aib.report.new { name = job.report.name, version = job.report.version }
+  if is_drawn(job, place) then part.report:draw() end
+  local read = job.evaluate(place.unit, part, place.range)
+  local text = aib.json.encode {
+    format = format_version, key = key, name = place.name, group = job.group(place.unit), files = list_files(read),
+    frames = part.frames, rows = part.rows, records = records_json.encode(part.report),
+    notes = records_json.notes(part.report),
+  } .. "\n"
+  local views = part.report:draws() and aib.json.encode {
+    part = aib.system.sha256(text), views = aib.json.list(part.report.store.views),
   }
-  part.report.store.views = job.report.store.views
-  local read = job.evaluate(unit, part)
-  return {
-    format = format_version, key = key, name = job.name(unit), group = job.group(unit), files = list_files(read),
-    frames = part.frames,
-    records = records_json.encode(part.report), notes = records_json.notes(part.report),
-  }
+  if job.results then
+    local path = path_of(job, place)
+    if views then aib.system.write_text(path .. ".views.json", views) end
+    aib.system.write_text(path .. ".json", text)
+  end
+  local done = aib.json.decode(text)
+  done.views = views and aib.json.decode(views).views
+  return done
 end
 
---- Adds what a unit found to the report. Its files are remembered as sources.
+--- Adds what a part found to the report. Its files are remembered as sources.
 function M.absorb(report, files, part)
   for _, record in ipairs(part.records) do report:insert(records_json.decode(record)) end
   for _, note in ipairs(part.notes) do report:note(note.key, note.text) end
+  if part.views and report:draws() then
+    table.move(part.views, 1, #part.views, #report.store.views + 1, report.store.views)
+  end
   for _, file in ipairs(part.files) do
     local of_label = files.used[file.label] or {}
     files.used[file.label] = of_label
-    of_label[file.name] = { bytes = file.bytes, sha256 = file.sha256 }
+    of_label[file.name] = { files = file.files, bytes = file.bytes, sha256 = file.sha256 }
   end
 end
 
---- Evaluates the units of this shard, or reads them back, and adds them to the report in their order. Returns the
---- parts, each { name =, group =, records =, notes =, frames =, files = }, and how many were reused.
+--- What a shard hands over: parts without what a page shows.
+local function shard_of(index, count, n_parts, parts)
+  local without = aib.json.list()
+  for i, part in ipairs(parts) do
+    without[i] = {}
+    for key, value in pairs(part) do without[i][key] = key ~= "views" and value or nil end
+  end
+  return { index = index, count = count, n_parts = n_parts, parts = without }
+end
+
+--- "16 of 18 parts are reused; made: crane / GLOMAP, ..."
+local function told(made_names, n)
+  if #made_names == 0 then return ("%d of %d parts are reused"):format(n, n) end
+  local most = 8
+  local names = table.concat(made_names, "; ", 1, math.min(most, #made_names))
+  return ("%d of %d parts are reused; made: %s%s"):format(n - #made_names, n, names,
+    #made_names > most and (" and %d more"):format(#made_names - most) or "")
+end
+
+--- Evaluates the parts of this shard, or reads them back. Returns them in their order, each { name =, unit = number of
+--- its unit, place =, group =, records =, notes =, frames =, rows =, files =, views = }, and how many were reused.
 function M.run(job)
   local index, count = M.shard_of(job.shard)
   if job.results then aib.system.make_folder(job.results) end
-  local places = {}
-  for i = index, #job.units, count do places[#places + 1] = i end
-  local progress <close> = aib.progress(#places, "units")
-  local parts, reused = {}, 0
-  for k, i in ipairs(places) do
-    local unit = job.units[i]
-    progress:step(job.name(unit))
-    local key = key_of(job, unit)
-    local part = kept(job, unit, key)
-    if part then reused = reused + 1 end
+  local places, own = places_of(job), {}
+  for i = index, #places, count do own[#own + 1] = i end
+  local progress <close> = aib.progress(#own, "parts")
+  local parts, statuses, made_names = {}, {}, {}
+  for k, i in ipairs(own) do
+    local place = places[i]
+    progress:step(place.name)
+    local key = key_of(job, place)
+    local part = kept(job, place, key, statuses)
     if not part then
-      part = new_part(job, unit, key)
-      local text = aib.json.encode(part)
-      if job.results then aib.system.write_text(path_of(job, unit), text .. "\n") end
-      part = aib.json.decode(text)  -- a fresh part is what a kept one is, to the last bit
+      made_names[#made_names + 1] = place.name
+      part = made(job, place, key)
     end
-    part.place = i
+    part.place, part.unit = i, place.index
     parts[k] = part
-    M.absorb(job.report, job.files, part)
   end
-  if count > 1 then
-    job.report.store.shard = { index = index, count = count, n_units = #job.units, parts = parts }
+  if job.results then progress:say(told(made_names, #own)) end
+  if count > 1 then job.report.store.shard = shard_of(index, count, #places, parts) end
+  return parts, #own - #made_names
+end
+
+--- The parts by unit: a list of lists.
+function M.grouped(parts)
+  local units = {}
+  for i, part in ipairs(parts) do
+    if i == 1 or part.unit ~= parts[i - 1].unit then units[#units + 1] = {} end
+    table.insert(units[#units], part)
   end
-  return parts, reused
+  return units
 end
 
 --- The parts of several shards, each { result = decoded JSON, path = }, in the order of one run. Raises a format error
@@ -151,17 +225,17 @@ function M.joined(shards)
     local function wrong(sentence) failure.raise("format", shard.path .. ": " .. sentence) end
     local own = shard.result.shard
     if type(own) ~= "table" then wrong "a shard expected, made by --shard INDEX/COUNT" end
-    if own.count ~= first.shard.count or own.n_units ~= first.shard.n_units or
+    if own.count ~= first.shard.count or own.n_parts ~= first.shard.n_parts or
       aib.json.encode(shard.result.inputs) ~= aib.json.encode(first.inputs) or
       shard.result.aib.version ~= first.aib.version or shard.result.protocol.name ~= first.protocol.name then
       wrong(("a shard of the same run as %s expected"):format(shards[1].path))
     end
     for _, part in ipairs(own.parts) do
-      if parts[part.place] then wrong(("unit %d, %s, comes twice"):format(part.place, part.name)) end
+      if parts[part.place] then wrong(("part %d, %s, comes twice"):format(part.place, part.name)) end
       parts[part.place] = part
     end
   end
-  for i = 1, first.shard.n_units do
+  for i = 1, first.shard.n_parts do
     if not parts[i] then
       failure.raise("format", ("shard %d/%d is missing"):format((i - 1) % first.shard.count + 1, first.shard.count))
     end

@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Long evaluations: finished units are reused, what was touched is made again, and an interrupted run, shards and one
+--- Long evaluations: finished parts are reused, what was touched is made again, and an interrupted run, shards and one
 --- run give the same bytes.
 local aib = require "aib"
 local support = require "support"
@@ -20,7 +20,7 @@ local function json_of(t, protocol, out, ...)
   return aib.system.read_text(out)
 end
 
---- Names of the kept units by what tells whether they were written again.
+--- Names of the kept parts by what tells whether they were written again.
 local function states(folder)
   local out = {}
   for _, name in ipairs(aib.system.names_in(folder)) do out[name] = aib.system.status(folder .. "/" .. name) end
@@ -34,7 +34,7 @@ local function copied_benchmark(scratch)
 end
 
 return aib.test {
-  ["a second run reuses every unit and gives the same bytes"] = function(t)
+  ["a second run reuses every part, gives the same bytes and says so"] = function(t)
     local scratch <close> = support.scratch_folder()
     local data, kept, out = copied_benchmark(scratch)
     local plain = json_of(t, script, out, data)
@@ -42,11 +42,33 @@ return aib.test {
     local before = states(kept)
     local second = json_of(t, script, out, data, "--results", kept)
     t:check(plain == first and first == second, "the bytes are the same")
-    t:equal(#aib.system.names_in(kept), 9)
+    t:equal(#aib.system.names_in(kept), 21)  -- nine units, and 32 of 81 or 61 images each where there are depth maps
     t:equal(states(kept), before)
+    local _, said = support.aib_lua(script, data, "--results", kept, fast[1], fast[2])
+    t:equal(said, "21 of 21 parts are reused\n")
   end,
 
-  ["a file that was touched makes exactly its units again"] = function(t)
+  ["a second page reuses every part and is the same bytes; a first one makes those with views"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local function page(...)
+      local file = scratch.path .. "/page.html"
+      local _, said, code = support.aib_lua(script, data, "--html", file, fast[1], fast[2], ...)
+      t:equal(code, 0, said)
+      return aib.system.read_text(file), said
+    end
+    local plain = page()
+    json_of(t, script, out, data, "--results", kept)
+    local first, said = page("--results", kept)
+    t:contains(said, "12 of 21 parts are reused")
+    local before = states(kept)
+    local second, said_again = page("--results", kept)
+    t:equal(said_again, "21 of 21 parts are reused\n")
+    t:equal(states(kept), before)
+    t:check(plain == first and first == second, "the bytes are the same")
+  end,
+
+  ["a file that was touched makes exactly its parts again"] = function(t)
     local scratch <close> = support.scratch_folder()
     local data, kept, out = copied_benchmark(scratch)
     local first = json_of(t, script, out, data, "--results", kept)
@@ -60,6 +82,19 @@ return aib.test {
     end
     t:equal(again, { "crane_GLOMAP" })
     t:check(first == second, "the bytes are the same")
+  end,
+
+  ["a file of other content makes its part again: what a run without kept parts gives"] = function(t)
+    local scratch <close> = support.scratch_folder()
+    local data, kept, out = copied_benchmark(scratch)
+    local before = json_of(t, script, out, data, "--results", kept)
+    local depth = data .. "/methods/sgbm_gtposes/crane/depth/"
+    local names = aib.system.names_in(depth)
+    aib.system.write_text(depth .. names[1], aib.system.read_text(depth .. names[2]))
+    local _, said = support.aib_lua(script, data, "--results", kept, fast[1], fast[2])
+    t:equal(said, "20 of 21 parts are reused; made: crane / SGBM, true poses, images 1 to 32\n")
+    local after = json_of(t, script, out, data, "--results", kept)
+    t:check(after ~= before and after == json_of(t, script, out, data), "the numbers follow the content")
   end,
 
   ["other options make all units again"] = function(t)
@@ -92,16 +127,25 @@ return aib.test {
     t:check(json_of(t, script, out, data, "--results", kept) == whole, "the bytes are the same")
   end,
 
-  ["shards in any order merge to the bytes of one run"] = function(t)
+  ["shards in any order and number merge to the bytes of one run"] = function(t)
     local scratch <close> = support.scratch_folder()
-    local data, _, out = copied_benchmark(scratch)
+    local data, kept, out = copied_benchmark(scratch)
     local whole = json_of(t, script, out, data, "--per-frame")
     local shards = {}
     for i = 1, 4 do
       shards[i] = ("%s/%d.json"):format(scratch.path, i)
       json_of(t, script, shards[i], data, "--per-frame", "--shard", i .. "/4")
     end
+    t:contains(aib.system.read_text(shards[3]), '"name": "crane / COLMAP + SGBM, images 33 to 64"')
     t:check(json_of(t, merge, out, shards[3], shards[1], shards[4], shards[2]) == whole, "the bytes are the same")
+    for _, n in ipairs { 2, 3, 16 } do
+      local of_n = {}
+      for i = 1, n do
+        of_n[i] = ("%s/%d_of_%d.json"):format(scratch.path, i, n)
+        json_of(t, script, of_n[i], data, "--per-frame", "--results", kept, "--shard", ("%d/%d"):format(i, n))
+      end
+      t:check(json_of(t, merge, out, table.unpack(of_n)) == whole, ("%d shards, the bytes are the same"):format(n))
+    end
     local _, complaints, code = support.aib_lua(merge, shards[1], shards[2], shards[4])
     t:equal(code, 3)
     t:contains(complaints, "shard 3/4 is missing")
@@ -141,8 +185,11 @@ exec %s "$@"
     local report = support.protocol("asset_inspection"):run {
       benchmark = support.root .. "/examples/data", samples = 2000, batch = { "COLMAP + SGBM=10" },
     }
-    local found, n_batches = {}, 0
+    local found, whole, n_batches = {}, {}, 0
     for _, r in ipairs(report:records()) do
+      if r.group.scene == "crane" and r.group.method == "COLMAP + SGBM" and not r.group.model then
+        whole[r.name] = r.value
+      end
       if r.group.scene == "crane" and r.group.method == "COLMAP + SGBM, batches of 10" then
         if not r.group.batch then found[r.name] = r.value end
         if r.group.batch and r.name == "align.scale" then n_batches = n_batches + 1 end
@@ -150,19 +197,31 @@ exec %s "$@"
     end
     t:check(n_batches >= 3)
     t:check(found["pose.auc30_intra"] > 0.9 and found["pose.auc30_cross"] > 0.9)
+    t:equal(found["depth.srmse"], whole["depth.srmse"])  -- of a logarithm, less its mean: no scale is in it
+    t:near(found["depth.abs_rel"], whole["depth.abs_rel"], 0.01)
+    t:check(found["depth.abs_rel"] ~= whole["depth.abs_rel"])
+    t:check(found["cloud.chamfer"] > 0 and found["cloud.f1_distance"] <= found["cloud.chamfer"] / 2)
   end,
 
   ["soiling: paired differences say how sensitive a method is"] = function(t)
     local report = support.protocol("asset_inspection"):run {
       benchmark = support.root .. "/examples/data", samples = 2000,
     }
-    local found = {}
+    local found, of_glomap = {}, {}
     for _, r in ipairs(report:records()) do
-      if r.group.contrast then found[r.name] = r end
+      if r.group.contrast and r.group.method == "SGBM, true poses" then found[r.name] = r end
+      if r.group.contrast and r.group.method == "GLOMAP" then of_glomap[r.name] = r end
     end
     t:equal(found["sensitivity.srmse_change"].n, 16)
     t:check(found["sensitivity.srmse_change_low"].value < found["sensitivity.srmse_change"].value)
     t:near(found["sensitivity.srmse_slope"].value, found["sensitivity.srmse_change"].value, 1e-15)  -- two levels
     t:near(found["sensitivity.srmse_within"].value, -found["sensitivity.srmse_change_low"].value, 1e-15)
+    for _, metric in ipairs { "coverage", "abs_rel", "delta1" } do
+      t:equal(found[("sensitivity.%s_slope"):format(metric)].n, 16)
+    end
+    t:equal(of_glomap["sensitivity.registration_rate_change"].n, 61)
+    t:near(of_glomap["sensitivity.registration_rate_change"].value, 1 / 61, 1e-12)  -- 60 of 61 images, then all
+    t:equal({ of_glomap["sensitivity.ape_within"].unit, of_glomap["sensitivity.ape_within"].n }, { "m", 60 })
+    t:equal(of_glomap["sensitivity.focal_mre_change"], nil)  -- of one camera: nothing of single images
   end,
 }

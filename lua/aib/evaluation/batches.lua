@@ -4,9 +4,9 @@
 --- Methods that reconstruct in batches, for the protocol asset_inspection.
 local aib = require "aib"
 local depth = require "aib.evaluation.depth"
-local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
 local points = require "aib.evaluation.points"
+local poses = require "aib.evaluation.poses"
 local suggest = require "aib.suggest"
 local with = require "aib.evaluation.with"
 
@@ -69,7 +69,7 @@ local function add_auc(cell, name, auc, input)
 end
 
 --- Poses of all batches; `given`: they are the true ones, of which no error means anything.
-local function score_batch_poses(fit, given, truth, how, input, cell)
+local function score_batch_poses(fit, given, truth, how, input, cell, frames)
   cell:add("pose.registration_rate", #fit.est / #truth.names, { better = "higher", n = #truth.names })
   cell:add("pose.n_registered", #fit.est, { better = "higher" })
   if given then
@@ -84,6 +84,7 @@ local function score_batch_poses(fit, given, truth, how, input, cell)
   end
   local ape = aib.batches.ape(fit)
   if ape then
+    if frames then poses.add_ape(frames, ape.all, fit.moved.ref) end
     cell:add("pose.ape_rmse", ape.all.rmse, { unit = "m", better = "lower", n = ape.all.count, options = how })
     if ape.kept then
       cell:add("pose.ape_rmse_kept", ape.kept.rmse, { unit = "m", better = "lower", n = ape.kept.count, options = how })
@@ -91,33 +92,8 @@ local function score_batch_poses(fit, given, truth, how, input, cell)
   end
 end
 
---- Depth of all batches, each at the scale of its alignment; where there is none, what needs no scale.
-local function score_batch_depth(fit, truth, how, input, cell, frames)
-  local has_truth = {}
-  for _, name in ipairs(truth.depth_names) do has_truth[name] = true end
-  local all, scaled, gsd, risks = aib.depth.accumulate(), aib.depth.accumulate(), {}, {}
-  for _, part in ipairs(fit.parts) do
-    local scale = part.alignment and part.alignment.transform.scale
-    local own = aib.depth.accumulate { transform = { scale = scale or 1 } }
-    for i, name in ipairs(part.batch.names) do
-      local est <close> = has_truth[name] and part.batch.depth(i) or nil
-      local confidence <close> = est and cell:draws() and part.batch.confidence and part.batch.confidence(i) or nil
-      if est then depth.add_frame(own, gsd, name, est, scale, truth, input, cell, confidence, risks) end
-    end
-    all:merge(own)
-    if scale then scaled:merge(own) end
-  end
-  drawings.risk(cell, risks)
-  if #all > 0 then depth.add_depth(all, #scaled > 0 and scaled or nil, gsd, truth, how, input, cell, frames) end
-end
-
---- Points of all batches: from their depth maps, or the method's own cloud where it has one frame of reference.
-local function score_batch_cloud(unit, fit, truth, files, how, input, cell)
-  local part = fit.parts[1]
-  if unit.result.cloud and #fit.parts == 1 and part.alignment then
-    local cloud = aib.scene.read_cloud(files, unit.result.cloud)
-    return points.add_cloud(part.alignment.transform * cloud, truth, how, input, cell)
-  end
+--- Points of all batches, from their depth maps.
+local function score_cloud_of_maps(unit, fit, truth, how, input, cell)
   local cut = { min_confidence = unit.result.confidence or input.confidence, stride = input.stride }
   local cloud, info = aib.batches.cloud(fit, cut)
   if #cloud == 0 then return end
@@ -127,6 +103,16 @@ local function score_batch_cloud(unit, fit, truth, files, how, input, cell)
   points.add_cloud(cloud, truth, with(how, {
     confidence = cut.min_confidence, confidence_rule = next(rules), stride = cut.stride,
   }), input, cell)
+end
+
+--- Points of all batches: from their depth maps, or the method's own cloud where it has one frame of reference.
+local function score_batch_cloud(unit, fit, truth, files, how, input, cell)
+  local part = fit.parts[1]
+  if not unit.result.cloud or #fit.parts > 1 or not part.alignment then
+    return score_cloud_of_maps(unit, fit, truth, how, input, cell)
+  end
+  local cloud = aib.scene.read_cloud(files, unit.result.cloud)
+  points.add_cloud(part.alignment.transform * cloud, truth, how, input, cell)
 end
 
 --- Names that match with their folders, or without them where none does.
@@ -164,24 +150,42 @@ function M.check_batches(input, benchmark)
   end
 end
 
---- An unbatched method cut into batches as a batched one has them: what its poses would score then, for each size that
---- is asked for.
-function M.score_in_batches(trajectory, method, truth, input, cell)
-  local batch = { names = trajectory.names, trajectory = trajectory, rule = "raw" }
-  for _, size in ipairs(batch_sizes(input)[method] or {}) do
-    local sub = cell:within { method = ("%s, batches of %d"):format(method, size) }
-    local how = { alignment = input.alignment, batch = size }
-    how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
+--- What an alignment depends on.
+local function alignment_of(input)
+  return { alignment = input.alignment, outlier_factor = input.alignment == "trimmed" and input.outlier_factor or nil }
+end
+
+--- A batch cut into batches of each size that is asked for, each aligned: list of { method =, fit =, how = }.
+function M.in_batches(batch, method, truth, input)
+  local list = {}
+  for _, size in ipairs(batch and batch_sizes(input)[method] or {}) do
+    local how = with(alignment_of(input), { batch = size })
     local fit = aib.batches.align(aib.batches.split(batch, truth.names, size), truth.trajectory,
       { outlier_factor = how.outlier_factor })
     if #fit.parts > 0 then
-      score_batch_poses(fit, false, truth, how, input, sub)
-      report_batches(fit, how, sub)
+      list[#list + 1] = { method = ("%s, batches of %d"):format(method, size), fit = fit, how = how }
+    end
+  end
+  return list
+end
+
+--- What each size of batches would score: poses, and points of the depth maps where there are any. The depth maps
+--- themselves are scored with the others, as series of their own.
+function M.score_in_batches(unit, opened, truth, input, cell)
+  for _, cut in ipairs(opened.in_batches) do
+    local sub = cell:within { method = cut.method }
+    score_batch_poses(cut.fit, false, truth, cut.how, input, sub)
+    report_batches(cut.fit, cut.how, sub)
+    local batch = cut.fit.parts[1].batch
+    if batch.cameras and batch.depth and points.has_surface(truth, sub) then
+      score_cloud_of_maps(unit, cut.fit, truth, cut.how, input, sub)
     end
   end
 end
 
-function M.evaluate_output(unit, truth, files, input, cell, frames)
+--- What a method left, aligned to the truth, and where its depth maps are: { method =, fit =, given =, how =, names =
+--- rules of names, in_batches =, depth = source | nil }.
+function M.open(unit, truth, files, input, cell)
   local method = open_method(unit, truth, files, cell)
   local given = unit.method.parameters == "ground truth"
   for _, batch in ipairs(method.batches) do
@@ -190,29 +194,36 @@ function M.evaluate_output(unit, truth, files, input, cell, frames)
       cell:note("its poses are the true ones, though the parameters are called estimated")
     end
   end
-  local how = { alignment = given and "none" or input.alignment }
-  how.outlier_factor = how.alignment == "trimmed" and input.outlier_factor or nil
+  local how = given and { alignment = "none" } or alignment_of(input)
+  local names = name_rules(method.batches, truth)
   local fit = aib.batches.align(method.batches, truth.trajectory, {
-    outlier_factor = how.outlier_factor, given = given, names = name_rules(method.batches, truth),
+    outlier_factor = how.outlier_factor, given = given, names = names,
   })
+  local opened = { method = method, fit = fit, given = given, how = how, names = names, in_batches = {} }
+  if #fit.parts == 0 then return opened end
+  if #fit.parts == 1 and not given then
+    opened.in_batches = M.in_batches(fit.parts[1].batch, unit.method.name, truth, input)
+  end
+  if method.batches[1].depth then opened.depth = depth.of_batches(fit, truth, how) end
+  return opened
+end
+
+--- What needs all images of what a method left: poses, focal lengths, points.
+function M.score(unit, opened, truth, files, input, cell, frames)
+  local fit, how = opened.fit, opened.how
   if #fit.parts == 0 then
     cell:note("no pose of it is of an image of the scene")
     return
   end
-  score_batch_poses(fit, given, truth, how, input, cell)
-  if not given then report_batches(fit, how, cell) end
-  local cameras = aib.batches.cameras(method.batches)
-  if cameras and not given then
-    cell:add("camera.focal_mre", function()
-      return aib.pose.focal_error(cameras, truth.cameras, { over = "views" }).mre
-    end, { better = "lower", convention = "mean over views" })
+  score_batch_poses(fit, opened.given, truth, how, input, cell, frames)
+  if not opened.given then
+    report_batches(fit, how, cell)
+    poses.add_registered(frames, fit.est, truth, opened.names)
   end
-  if method.batches[1].depth then score_batch_depth(fit, truth, how, input, cell, frames) end
+  local cameras = aib.batches.cameras(opened.method.batches)
+  if cameras and not opened.given then poses.add_focal(cameras, truth, cell, frames) end
   if points.has_surface(truth, cell) then score_batch_cloud(unit, fit, truth, files, how, input, cell) end
-  if #fit.parts == 1 and not given then
-    M.score_in_batches(fit.parts[1].batch.trajectory, unit.method.name, truth, input, cell)
-  end
+  M.score_in_batches(unit, opened, truth, input, cell)
 end
-
 
 return M

@@ -56,18 +56,20 @@ function M.trajectory(cell, est, ref)
   cell:cameras { estimate = est, reference = ref, errors = errors }
 end
 
---- Cameras in space and their errors along the flight.
+--- Position errors along the flight, { names =, values = }.
+function M.pose_series(cell, ape)
+  if not ape or not cell:draws() then return end
+  cell:timeline { title = "Camera position, error along the flight", y = { label = "APE", unit = "m" },
+    frames = ape.names, values = ape.values }
+end
+
+--- Cameras in space, in the colours of their errors.
 function M.cameras(cell, model, truth, registration)
   if not is_drawn(cell) or not model.alignment then return end
   local transform = model.alignment.transform
   local ape = aib.pose.ape(transform * model.est, model.ref)
-  local names, errors = {}, {}
-  for i, place in ipairs(ape.index) do
-    names[i] = model.ref.names[place]
-    errors[names[i]] = ape.errors[i]
-  end
-  cell:timeline { title = "Camera position, error along the flight", y = { label = "APE", unit = "m" }, frames = names,
-    values = ape.errors }
+  local errors = {}
+  for i, place in ipairs(ape.index) do errors[model.ref.names[place]] = ape.errors[i] end
   cell:cameras { estimate = transform * model.trajectory, reference = truth.trajectory,
     missing = registration.missing, errors = errors }
   if truth.mesh then cell:mesh { mesh = truth.mesh } end

@@ -4,6 +4,7 @@
 --- Poses and intrinsics of a method's models, for the protocol asset_inspection.
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -17,19 +18,25 @@ function M.models_of(result, files)
   return { { name = "0", trajectory = trajectory, cameras = cameras, points = {} } }
 end
 
---- Pairs a model's poses with the truth and aligns them: a Sim(3) of the camera positions.
-local function align(model, truth, input, cell)
-  model.est, model.ref = aib.pose.associate(model.trajectory, truth.trajectory, { by = "name" })
+--- Pairs each model's poses with the truth and aligns them: a Sim(3) of the camera positions. A model without
+--- `alignment` says in `obstacle` why.
+function M.align(models, truth, input)
   local trimmed = input.alignment == "trimmed"
-  model.how = { alignment = input.alignment, outlier_factor = trimmed and input.outlier_factor or nil }
-  model.alignment = cell:attempt(function()
-    return aib.align.trajectory(model.est, model.ref, { mode = "sim3", outlier_factor = model.how.outlier_factor })
-  end, "no alignment to the truth")
+  for _, model in ipairs(models) do
+    model.est, model.ref = aib.pose.associate(model.trajectory, truth.trajectory, { by = "name" })
+    model.how = { alignment = input.alignment, outlier_factor = trimmed and input.outlier_factor or nil }
+    model.alignment, model.obstacle = aib.report:attempt(function()
+      return aib.align.trajectory(model.est, model.ref, { mode = "sim3", outlier_factor = model.how.outlier_factor })
+    end)
+  end
 end
 
 local function score_alignment(model, cell)
   local alignment, how = model.alignment, model.how
-  if not alignment then return end
+  if not alignment then
+    cell:note("no alignment to the truth: " .. model.obstacle)
+    return
+  end
   local ape = aib.pose.ape(alignment.transform * model.est, model.ref)
   cell:add("pose.ape_rmse", ape.rmse, { unit = "m", better = "lower", n = #model.est, options = how })
   cell:add("align.rmse", alignment.rmse, { unit = "m", better = "lower", n = alignment.n_inliers, options = how })
@@ -64,7 +71,44 @@ local function score_angles(model, truth, input, cell)
   end
 end
 
-local function score_model(model, truth, input, cell)
+--- Position errors of aligned frames by name, for `frames` of a part.
+function M.add_ape(frames, ape, ref)
+  local names = aib.json.list()
+  for i, place in ipairs(ape.index) do names[i] = ref.names[place] end
+  frames["pose.ape"] = { names = names, values = aib.json.list(table.move(ape.errors, 1, #ape.errors, 1, {})) }
+end
+
+--- For each image of the scene whether it is registered, 1 or 0.
+function M.add_registered(frames, trajectory, truth, rules)
+  local names, values, is_missing = aib.json.list(), aib.json.list(), {}
+  for _, name in ipairs(aib.pose.registration_rate(trajectory, truth.trajectory, rules).missing) do
+    is_missing[name] = true
+  end
+  for i, name in ipairs(truth.names) do names[i], values[i] = name, is_missing[name] and 0 or 1 end
+  frames["pose.registered"] = { names = names, values = values }
+end
+
+local function are_equal(values)
+  for _, value in ipairs(values) do
+    if value ~= values[1] then return false end
+  end
+  return true
+end
+
+--- Mean relative error of the focal lengths, over views; that of each goes to `frames`, unless they share one.
+function M.add_focal(cameras, truth, cell, frames)
+  local found
+  cell:add("camera.focal_mre", function()
+    found = aib.pose.focal_error(cameras, truth.cameras, { over = "views" })
+    return found.mre
+  end, { better = "lower", convention = "mean over views" })
+  if not found or not frames then return end
+  local names, values = aib.json.list(suggest.keys(found.each)), aib.json.list()
+  for i, name in ipairs(names) do values[i] = found.each[name] end
+  if not are_equal(values) then frames["camera.focal_error"] = { names = names, values = values } end
+end
+
+local function score_model(model, truth, input, cell, frames)
   local registration = aib.pose.registration_rate(model.trajectory, truth.trajectory)
   cell:add("pose.registration_rate", registration.rate, { better = "higher", n = registration.n_total })
   cell:add("pose.n_registered", registration.n_registered, { better = "higher" })
@@ -72,26 +116,26 @@ local function score_model(model, truth, input, cell)
   score_angles(model, truth, input, cell)
   score_alignment(model, cell)
   drawings.cameras(cell, model, truth, registration)
-  if not model.cameras then return end
-  cell:add("camera.focal_mre", function()
-    return aib.pose.focal_error(model.cameras, truth.cameras, { over = "views" }).mre
-  end, { better = "lower", convention = "mean over views" })
+  if model.cameras then M.add_focal(model.cameras, truth, cell, frames) end
 end
 
 --- Scores every model. The largest stands for the method, whatever its score; the others are groups of their own.
-function M.score_models(models, truth, input, cell)
+function M.score_models(models, truth, input, cell, frames)
   local scored = aib.submodels.largest(models)
   for _, model in ipairs(models) do
     local sub = #models > 1 and cell:within { model = model.name } or cell
-    align(model, truth, input, model == scored and cell or sub)
-    if model == scored then score_model(model, truth, input, cell) end
+    if model == scored then
+      score_model(model, truth, input, cell, frames)
+      M.add_registered(frames, model.trajectory, truth)
+      if model.alignment then
+        M.add_ape(frames, aib.pose.ape(model.alignment.transform * model.est, model.ref), model.ref)
+      end
+    end
     if #models > 1 then score_model(model, truth, input, sub) end
   end
   if #models > 1 then
     cell:note(("the largest of %d sub-models is scored, number %s"):format(#models, scored.name))
   end
-  return scored
 end
-
 
 return M

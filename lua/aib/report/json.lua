@@ -9,10 +9,11 @@
 ---   inputs       options of the run
 ---   conventions  name -> sentence
 ---   sources      file, relative to the benchmark -> { bytes =, sha256 = }
+---   rounding     where the numbers are from print: half a unit of the last digit
 ---   records      { name =, value = number|null, unit =, better =, n =, group =, convention =, options =, note = }
 ---   notes        { key =, text = }
 ---   frames       where asked for: { metric =, group =, names =, values = }
----   shard        of a part of a run: { index =, count =, n_units =, parts = }, for aib-lua merge
+---   shard        of a part of a run: { index =, count =, n_parts =, parts = }, for aib-lua merge
 local json = require "aib.json"
 local records = require "aib.report.records"
 
@@ -23,7 +24,7 @@ return function(report)
   return json.encode {
     aib = { version = report.version, format = format_version },
     protocol = { name = report.name, title = report.title, cite = report.cite },
-    inputs = store.inputs, conventions = store.conventions, sources = store.sources,
+    inputs = store.inputs, conventions = store.conventions, sources = store.sources, rounding = store.rounding,
     records = records.encode(report), notes = records.notes(report), frames = store.frames, shard = store.shard,
   } .. "\n"
 end

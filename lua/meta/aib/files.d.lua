@@ -19,6 +19,12 @@ function files.new(folder) end
 ---@return string
 function files.expand(pattern, image) end
 
+---What tells whether a file was touched: its size and the time of its last change; of a folder, those of its files and
+---the names of its folders. Nil where there is nothing.
+---@param path string
+---@return string|nil status
+function files.status(path) end
+
 ---Path of a file or folder.
 ---@param name string
 ---@return string

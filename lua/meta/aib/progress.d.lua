@@ -13,6 +13,10 @@ local instance = {}
 ---@param what? string
 function instance:step(what) end
 
+---Says a sentence that stays.
+---@param text string
+function instance:say(text) end
+
 ---Ends it; `local progress <close> = aib.progress(...)` does so by itself.
 function instance:close() end
 

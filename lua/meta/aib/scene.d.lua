@@ -9,7 +9,7 @@ local scene = {}
 ---@field names string[]  # images expected
 ---@field trajectory aib.Trajectory
 ---@field cameras table<string, aib.Camera>
----@field depth fun(name: string): aib.DepthMap
+---@field depth fun(name: string, files?: aib.Files): aib.DepthMap  # files: remembers the file instead of the scene's
 ---@field depth_names string[]  # images that have a depth map
 ---@field mesh aib.Mesh|nil
 ---@field points aib.Cloud|nil  # cropped

@@ -23,12 +23,14 @@ local sensitivity = {}
 ---@return aib.Sensitivity|nil
 function sensitivity.of(levels, options) end
 
----Adds the records and a sentence of a metric to a report.
+---Adds the records of a metric to a report and returns a sentence that says them; nil where nothing is paired.
 ---@param report aib.Report
 ---@param metric string
 ---@param levels aib.sensitivity.Level[]
 ---@param depends? table<string, any>  # what they depend on, as their options
-function sensitivity.add(report, metric, levels, depends) end
+---@param unit? string  # of the metric
+---@return string|nil sentence
+function sensitivity.add(report, metric, levels, depends, unit) end
 
 ---The mean of a series of frames and its bootstrap interval; blocks are at most a quarter of the series.
 ---@param values number[]
