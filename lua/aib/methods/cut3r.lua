@@ -16,16 +16,12 @@ return {
   end,
   open = function(folder, options)
     local files = frames(folder)
-    local names, told = kit.names(folder, #files, options)
     local function map(part)
       return function(i) return aib.io.read_depth(("%s/%s/%s"):format(folder, part, files[i])) end
     end
-    local first = map "depth"(1)
-    return {
-      names = names, named = told, rule = "raw", depth = map "depth",
-      confidence = aib.system.is_folder(folder .. "/conf") and map "conf" or nil,
-      trajectory = aib.io.read_trajectory(folder .. "/camera", { names = names }),
-      cameras = kit.sized(aib.io.read_cameras(folder .. "/camera", { names = names }), first),
-    }
+    return kit.frame_batch(folder, #files, {
+      depth = map "depth", confidence = aib.system.is_folder(folder .. "/conf") and map "conf" or nil,
+      poses = folder .. "/camera", cameras = folder .. "/camera",
+    }, options)
   end,
 }

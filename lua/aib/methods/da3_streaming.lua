@@ -15,19 +15,15 @@ return {
     end
   end,
   open = function(folder, options)
-    local files = frames(folder)
-    local names, told = kit.names(folder, #files, options)
+    local files, combined = frames(folder), folder .. "/pcd/combined_pcd.ply"
     local function map(key)
       return function(i) return aib.io.read_depth(folder .. "/results_output/" .. files[i], { key = key }) end
     end
-    local first = map "depth"(1)
-    local combined = folder .. "/pcd/combined_pcd.ply"
-    return {
-      names = names, named = told, rule = "raw", depth = map "depth", confidence = map "conf",
-      trajectory = aib.io.read_trajectory(folder, { names = names }),
-      cameras = kit.exists(folder, "intrinsic.txt") and
-        kit.sized(aib.io.read_cameras(folder, { names = names }), first) or nil,
-      points = aib.system.is_file(combined) and kit.cloud(combined) or nil,
-    }
+    local batch = kit.frame_batch(folder, #files, {
+      depth = map "depth", confidence = map "conf", poses = folder,
+      cameras = kit.exists(folder, "intrinsic.txt") and folder or nil,
+    }, options)
+    batch.points = aib.system.is_file(combined) and kit.cloud(combined) or nil
+    return batch
   end,
 }

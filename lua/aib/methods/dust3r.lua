@@ -24,14 +24,14 @@ return {
   end,
   open = function(folder, options)
     local files, sure = frames(folder), kit.numbered(folder, "^conf_(%d+)%.npy$")
-    local names, told = kit.names(folder, #files, options)
-    local function depth(i) return aib.io.read_depth(folder .. "/" .. files[i]) end
-    return {
-      names = names, named = told, rule = "raw", depth = depth,
-      confidence = #sure == #files and function(i) return aib.io.read_depth(folder .. "/" .. sure[i]) end or nil,
-      trajectory = aib.io.read_trajectory(folder .. "/pred_traj.txt",
-        { names = names, format = "tum", quaternion = "wxyz" }),
-      cameras = kit.exists(folder, "pred_intrinsics.txt") and cameras_of(folder, names, depth(1)) or nil,
-    }
+    local function map(list) return function(i) return aib.io.read_depth(folder .. "/" .. list[i]) end end
+    local batch = kit.frame_batch(folder, #files, {
+      depth = map(files), confidence = #sure == #files and map(sure) or nil,
+      poses = folder .. "/pred_traj.txt", how = { format = "tum", quaternion = "wxyz" },
+    }, options)
+    if kit.exists(folder, "pred_intrinsics.txt") then
+      batch.cameras = cameras_of(folder, batch.names, batch.depth(1))
+    end
+    return batch
   end,
 }

@@ -108,6 +108,24 @@ function M.stack_batch(folder, path, keys, options)
   return batch
 end
 
+--- The batch of a folder with a file for every depth map.
+---
+---   depth, confidence   functions of the frame's number; confidences are raw
+---   poses, how          what aib.io.read_trajectory reads, and its options
+---   cameras             file or folder of aib.io.read_cameras, nil where there is none
+function M.frame_batch(folder, n, source, options)
+  local names, told = M.names(folder, n, options)
+  local how = { names = names }
+  for key, value in pairs(source.how or {}) do how[key] = value end
+  local batch = { names = names, named = told, rule = "raw", depth = source.depth, confidence = source.confidence,
+    trajectory = aib.io.read_trajectory(source.poses, how) }
+  if source.cameras then
+    local first <close> = source.depth(1)
+    batch.cameras = M.sized(aib.io.read_cameras(source.cameras, { names = names }), first)
+  end
+  return batch
+end
+
 --- A cloud that is read at its first use.
 function M.cloud(path)
   local cloud
