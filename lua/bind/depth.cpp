@@ -7,6 +7,7 @@
 #include <aib/depth/errors.hpp>
 #include <aib/raster/downsample.hpp>
 
+#include "depth_reading.hpp"
 #include "stats.hpp"
 #include <algorithm>
 #include <cmath>
@@ -91,15 +92,13 @@ void bind_depth(lua_State* state) {
   module(state, "depth")
       .function("map", {"rows"},
                 [](const std::vector<std::vector<double>>& rows) { return map_of_rows(rows); })
-      .function(
-          "downsample", {"depth", "width", "height", "options"},
-          [](const depth_map& d, std::size_t width, std::size_t height, options& o) {
-            using enum raster::nearest_rule;
-            const auto rule = o.choice("rule", centre, {{"centre", centre}, {"floor", floor}});
-            o.done();
-            return depth_map{raster::resample_nearest(d.values.view(), width, height, rule),
-                             d.warnings};
-          })
+      .function("downsample", {"depth", "width", "height", "options"},
+                [](const depth_map& d, std::size_t width, std::size_t height, options& o) {
+                  const auto rule = rule_option(o);
+                  o.done();
+                  return depth_map{raster::resample_nearest(d.values.view(), width, height, rule),
+                                   d.warnings};
+                })
       .function(
           "errors", {"estimate", "reference", "options"},
           [](lua_State* l, const depth_map& estimate, const depth_map& reference, options& o) {

@@ -5,6 +5,7 @@
 #include <aib/io/depth_frame.hpp>
 
 #include "depth.hpp"
+#include "depth_reading.hpp"
 #include "stats.hpp"
 #include <cmath>
 #include <cstddef>
@@ -36,23 +37,14 @@ record frame_record(lua_State* state, const depth::frame_record& f) {
   return bind::as_record(state, f.errors, f.sums).set("name", f.name);
 }
 
-raster::nearest_rule rule_option(options& o) {
-  using enum raster::nearest_rule;
-  return o.choice("rule", centre, {{"centre", centre}, {"floor", floor}});
-}
-
 /// How one of the two maps is read: a table of options inside the options.
 io::depth_options reading_option(lua_State* state, options& o, const char* name) {
-  io::depth_options read;
   const auto table = o.get<sol::table>(name);
-  if (!table) return read;
+  if (!table) return {};
   table->push();
   const std::string function = "aib.depth.evaluate", argument = name;
   options inner(state, lua_gettop(state), function, {function, place::option, argument});
-  read.channel = inner.text("channel", read.channel);
-  read.key = inner.text("key", read.key);
-  read.scale = inner.number("scale", read.scale);
-  read.max_depth = inner.number("max_depth", read.max_depth);
+  const io::depth_options read = depth_values(inner);
   inner.done();
   lua_pop(state, 1);
   return read;

@@ -7,11 +7,13 @@
 #include <aib/io/depth.hpp>
 #include <aib/io/frame_stack.hpp>
 #include <aib/io/image.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/mesh.hpp>
 #include <aib/math/camera.hpp>
 #include <aib/raster/color.hpp>
 #include <aib/stats/quantiles.hpp>
 
+#include "depth_reading.hpp"
 #include "kit.hpp"
 #include <cmath>
 #include <cstddef>
@@ -33,9 +35,10 @@ io::up_axis up_option(options& o) {
   return o.choice("up", io::up_axis::z, {{"z", io::up_axis::z}, {"y", io::up_axis::y}});
 }
 
-raster::nearest_rule rule_option(options& o) {
-  using enum raster::nearest_rule;
-  return o.choice("rule", centre, {{"centre", centre}, {"floor", floor}});
+/// How much a packed array may hold.
+void packed_limits(options& o, io::limits& l) {
+  l.max_ratio = o.number("max_ratio", l.max_ratio);
+  l.max_bytes = o.count("max_bytes", l.max_bytes);
 }
 
 io::cloud_options cloud_options(options& o) {
@@ -44,25 +47,25 @@ io::cloud_options cloud_options(options& o) {
   c.up = up_option(o);
   c.key = o.text("key", c.key);
   c.splats = o.choice("splats", c.splats, {{"refuse", refuse}, {"centres", centres}});
+  c.limits.max_points = o.count("max_points", c.limits.max_points);
+  packed_limits(o, c.limits);
   return c;
 }
 
 io::depth_options depth_options(options& o) {
-  io::depth_options d;
-  d.channel = o.text("channel", d.channel);
-  d.key = o.text("key", d.key);
+  io::depth_options d = depth_values(o);
   if (const auto index = o.get<std::size_t>("index")) {
     if (*index == 0) o.reject("index", "frames count from 1");
     d.index = *index - 1;
   }
-  d.scale = o.number("scale", d.scale);
-  d.max_depth = o.number("max_depth", d.max_depth);
   d.width = o.count("width", d.width);
   d.height = o.count("height", d.height);
   d.rule = rule_option(o);
   d.raw_width = o.count("raw_width", d.raw_width);
   d.raw_height = o.count("raw_height", d.raw_height);
   if (const auto* camera = o.object<math::camera>("range_camera")) d.range_camera = *camera;
+  d.limits.max_pixels = o.count("max_pixels", d.limits.max_pixels);
+  packed_limits(o, d.limits);
   return d;
 }
 
@@ -121,9 +124,13 @@ sol::object read_picture(lua_State* state, const path& file, options& o) {
   enum class kind { automatic, labels, color };
   const auto as =
       o.choice("as", kind::automatic, {{"labels", kind::labels}, {"color", kind::color}});
+  io::limits limits;
+  limits.max_pixels = o.count("max_pixels", limits.max_pixels);
   o.done();
-  const bool labels = as == kind::labels || (as == kind::automatic && io::is_label_image(file));
-  return labels ? as_object(state, io::read_labels(file)) : as_object(state, io::read_image(file));
+  const bool labels =
+      as == kind::labels || (as == kind::automatic && io::is_label_image(file, limits));
+  return labels ? as_object(state, io::read_labels(file, limits))
+                : as_object(state, io::read_image(file, limits));
 }
 
 void write_picture(const path& file, const sol::object& image) {
@@ -149,9 +156,10 @@ void bind_readers(module& m) {
     return io::read_cloud(file, read);
   });
   m.function("read_mesh", {"path", "options"}, [](const path& file, options& o) {
-    const auto up = up_option(o);
+    io::mesh_options read{.up = up_option(o)};
+    read.limits.max_points = o.count("max_points", read.limits.max_points);
     o.done();
-    return io::read_mesh(file, {.up = up});
+    return io::read_mesh(file, read);
   });
   m.function("read_depth", {"path", "options"}, [](const path& file, options& o) {
     const auto read = depth_options(o);
