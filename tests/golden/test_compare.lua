@@ -42,6 +42,31 @@ local function value_of(report, name, file, method)
   end
 end
 
+--- Not of any publication: written for this test, with cells that cannot be.
+local made_up <const> = [[
+# a made-up table
+metric,scene,condition,method,value,convention
+cloud.chamfer,Hall,"wet, dark",A,0.537,sum
+cloud.f1_distance,Hall,"wet, dark",A,0.617,harmonic
+pose.auc30,Hall,dry,B,0.810,paper
+pose.auc30_joint,Hall,dry,B,0.820,"of ""both"" errors"
+depth.coverage,Hall,dry,B,97.4 %,
+depth.srmse,Hall,dry,B,-,
+pose.registration_rate,Hall,dry,C,1.200,
+cloud.accuracy,Hall,dry,D,0.020,
+cloud.sampling_floor,Hall,dry,D,0.050,
+cloud.completeness,Hall,dry,D,0.100,
+cloud.chamfer,Hall,dry,D,0.120,
+cloud.f1_distance,Hall,dry,D,0.033,
+]]
+
+--- What `published` says of a text: output, complaints, exit code; table.json is written.
+local function published(folder, text)
+  aib.system.write_text(folder.path .. "/table.csv", text)
+  return support.aib_lua(support.root .. "/examples/protocols/published.lua", folder.path .. "/table.csv", "--cite",
+    "nobody, a made-up table", "--json", folder.path .. "/table.json")
+end
+
 --- A series with noise of its own that begins at `from`.
 local function series(from)
   local values = {}
@@ -114,5 +139,41 @@ return aib.test {
     t:contains(notes, "0.617 is above half of cloud.chamfer = 0.537")
     _, notes = compare { result_of(records) }
     t:contains(notes, "a: 3 groups have impossible numbers")
+  end,
+
+  ["a printed table becomes results: impossible cells are named one by one"] = function(t)
+    local folder <close> = support.scratch_folder()
+    local json, output, complaints, code = folder.path .. "/table.json", published(folder, made_up)
+    t:equal({ complaints, code }, { "", 0 })
+    t:contains(output, "3 groups have impossible numbers")
+    local result = aib.results.read(json)
+    t:equal({ result.rounding, result.protocol.cite, #result.records }, { 0.0005, "nobody, a made-up table", 12 })
+    t:equal(result.records[1].group, { scene = "Hall", condition = "wet, dark", method = "A" })
+    t:equal({ result.records[1].value, result.records[1].unit, result.records[1].better }, { 0.537, "m", "lower" })
+    t:equal({ result.records[5].value, result.records[6].value }, { 0.974, nil })
+    local report = support.protocol("compare"):run { results = { json } }
+    local text = table.concat(report:note_lines(), "\n")
+    for _, cell in ipairs {
+      "Hall / wet, dark / A: impossible: cloud.f1_distance = 0.617 is above half of cloud.chamfer = 0.537",
+      "Hall / dry / B: impossible: pose.auc30_joint = 0.82, of both errors at once, is above pose.auc30 = 0.81",
+      "Hall / dry / C: impossible: pose.registration_rate = 1.2 is not a share of 0 to 1",
+      "cloud.accuracy = 0.02 lies below cloud.sampling_floor = 0.05, what a perfect cloud gets",
+      "3 groups have impossible numbers",
+    } do
+      t:contains(text, cell)
+    end
+  end,
+
+  ["a table that is none is told by its line"] = function(t)
+    local folder <close> = support.scratch_folder()
+    for text, sentence in pairs {
+      ["scene,value\n"] = "table.csv:1: columns metric and value expected in the first line",
+      ["metric,value\ncloud.chamfer\n"] = "table.csv:2: 2 fields expected, found 1",
+      ["metric,value\n# as printed\ncloud.chamfer,0.5 m\n"] = "table.csv:3: value: a number expected, found '0.5 m'",
+    } do
+      local _, complaints, code = published(folder, text)
+      t:equal(code, 3)
+      t:contains(complaints, sentence)
+    end
   end,
 }
