@@ -15,12 +15,18 @@ local list_type = {}
 --- A table that is written as an array even where it is empty.
 function M.list(t) return setmetatable(t or {}, list_type) end
 
+local formats = {}
+for digits = 1, 17 do formats[digits] = ("%%.%dg"):format(digits) end
+
 --- The shortest decimal text that reads back as the same number.
 function M.number(x)
   if math.type(x) == "integer" then return ("%d"):format(x) end
   if x ~= x or x == math.huge or x == -math.huge then error("json: a number that is not finite", 2) end
-  for digits = 1, 17 do
-    local text = ("%%.%dg"):format(digits):format(x)
+  local text = ("%.15g"):format(x)
+  local first, last = 1, 15
+  if tonumber(text) + 0.0 ~= x then first, last = 16, 17 end
+  for digits = first, last do
+    text = formats[digits]:format(x)
     if tonumber(text) + 0.0 == x then return text end
   end
 end
@@ -109,6 +115,11 @@ function reader:take(pattern)
 end
 
 function reader:string()
+  local plain, after = self.text:match('^([^"\\%c]*)"()', self.at)
+  if plain then
+    self.at = after
+    return plain
+  end
   local parts = {}
   while true do
     local stop = self.text:find('["\\%c]', self.at) or #self.text + 1
