@@ -8,6 +8,7 @@
 ---
 --- The benchmark fuses depth to a mesh and samples it at random, which cannot be repeated; this begins with a cloud.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 --- Threshold and voxel of each data set, metres.
 local datasets <const> = {
@@ -44,7 +45,9 @@ return aib.protocol {
       estimate = aib.sample.voxel(estimate, { size = voxel, anchor = "open3d" })
       reference = aib.sample.voxel(reference, { size = voxel, anchor = "open3d" })
     end
-    local c = aib.cloud.compare(estimate, reference, { tau = threshold })
+    local to_reference, to_estimate = aib.cloud.distances_both_ways(estimate, reference)
+    local c = aib.cloud.score(to_reference, to_estimate, { tau = threshold })
+    drawings.points(report, estimate, { reference = reference }, to_reference, to_estimate, { threshold })
     local options = { voxel = voxel, threshold = threshold }
     local function add(name, value, unit, better)
       report:add("da3." .. name, value, { unit = unit, better = better, n = c.n_estimate, options = options })

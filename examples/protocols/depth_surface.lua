@@ -7,23 +7,20 @@
 ---   aib-lua depth_surface method/depth gt/depth --cameras gt/poses        # or --focal 2666.7 (pixels of the photo)
 local aib = require "aib"
 local depth_frames = require "aib.depth_frames"
+local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
 
 local strata <const> = { "inside", "edge", "thin" }
 
---- Means of numbers by name, over the frames that have them.
-local function new_means() return setmetatable({ sums = {}, counts = {} }, { __index = {
-  add = function(self, name, value)
-    if not value then return end
-    self.sums[name] = (self.sums[name] or 0) + value
-    self.counts[name] = (self.counts[name] or 0) + 1
-  end,
-  report = function(self, report, name, options)
-    options.n = self.counts[name] or 0
-    options.convention = "mean over frames"
-    report:add("surface." .. name, self.sums[name] and self.sums[name] / options.n, options)
-  end,
-} }) end
+--- Adds the mean of a number over the frames that have it.
+local function add_mean(frames, report, name, options)
+  local sum, n = 0, 0
+  for _, numbers in ipairs(frames) do
+    if numbers[name] then sum, n = sum + numbers[name], n + 1 end
+  end
+  options.n, options.convention = n, "mean over frames"
+  report:add("surface." .. name, n > 0 and sum / n or nil, options)
+end
 
 --- The camera of a frame: that of its image, the only one of all, or one of the focal length.
 local function camera_finder(input)
@@ -49,46 +46,59 @@ local function camera_finder(input)
   end
 end
 
---- Adds what one frame says.
-local function add_frame(means, est, ref, camera, input, report)
+--- What one frame says, by name.
+local function numbers_of(est, ref, camera, input, report)
   local surface = aib.depth.surface_errors(est, ref, camera, { tau = input.tau })
-  means:add("mean_gsd", 1000 * surface.mean_gsd)
+  local numbers = { mean_gsd = 1000 * surface.mean_gsd }
   for _, field in ipairs { "median", "p95", "rmse" } do
-    means:add("distance_" .. field, 1000 * surface.distance[field])
-    means:add("gsd_" .. field, surface.gsd[field])
+    numbers["distance_" .. field] = 1000 * surface.distance[field]
+    numbers["gsd_" .. field] = surface.gsd[field]
   end
   for _, tau in ipairs(input.tau) do
-    means:add(("within_%g_gsd"):format(tau), surface.within[tau])
-    means:add(("within_total_%g_gsd"):format(tau), surface.within_total[tau])
+    numbers[("within_%g_gsd"):format(tau)] = surface.within[tau]
+    numbers[("within_total_%g_gsd"):format(tau)] = surface.within_total[tau]
   end
   local normals = report:attempt(function() return aib.depth.normal_errors(est, ref, camera) end)
-  means:add("normal_mean", normals and normals.mean_deg)
-  means:add("boundary_f1", aib.depth.boundary_f1(est, ref))
+  numbers.normal_mean = normals and normals.mean_deg
+  numbers.boundary_f1 = aib.depth.boundary_f1(est, ref)
   local errors = aib.depth.errors(est, ref, { labels = aib.depth.strata(ref) })
   for label, stratum in ipairs(strata) do
     local of_stratum = errors.by_label[label] or {}
-    means:add("abs_rel_" .. stratum, of_stratum.abs_rel)
-    means:add("coverage_" .. stratum, of_stratum.coverage)
+    numbers["abs_rel_" .. stratum] = of_stratum.abs_rel
+    numbers["coverage_" .. stratum] = of_stratum.coverage
+  end
+  return numbers
+end
+
+local function report_means(frames, report, input)
+  add_mean(frames, report, "mean_gsd", { unit = "mm" })
+  for _, field in ipairs { "median", "p95", "rmse" } do
+    add_mean(frames, report, "distance_" .. field, { unit = "mm", better = "lower" })
+  end
+  for _, field in ipairs { "median", "p95", "rmse" } do
+    add_mean(frames, report, "gsd_" .. field, { unit = "GSD", better = "lower" })
+  end
+  for _, tau in ipairs(input.tau) do
+    add_mean(frames, report, ("within_%g_gsd"):format(tau), { better = "higher" })
+    add_mean(frames, report, ("within_total_%g_gsd"):format(tau), { better = "higher" })
+  end
+  add_mean(frames, report, "normal_mean", { unit = "deg", better = "lower" })
+  add_mean(frames, report, "boundary_f1", { better = "higher" })
+  for _, stratum in ipairs(strata) do
+    add_mean(frames, report, "abs_rel_" .. stratum, { better = "lower" })
+    add_mean(frames, report, "coverage_" .. stratum, { better = "higher" })
   end
 end
 
-local function report_means(means, report, input)
-  means:report(report, "mean_gsd", { unit = "mm" })
-  for _, field in ipairs { "median", "p95", "rmse" } do
-    means:report(report, "distance_" .. field, { unit = "mm", better = "lower" })
-  end
-  for _, field in ipairs { "median", "p95", "rmse" } do
-    means:report(report, "gsd_" .. field, { unit = "GSD", better = "lower" })
-  end
+--- Distances and what is near enough along the flight.
+local function draw(report, frames, input)
+  drawings.series(report, "Median distance along the flight", { label = "distance", unit = "mm" }, frames,
+    "distance_median")
+  drawings.series(report, "95 % of the distances along the flight", { label = "distance", unit = "mm" }, frames,
+    "distance_p95")
   for _, tau in ipairs(input.tau) do
-    means:report(report, ("within_%g_gsd"):format(tau), { better = "higher" })
-    means:report(report, ("within_total_%g_gsd"):format(tau), { better = "higher" })
-  end
-  means:report(report, "normal_mean", { unit = "deg", better = "lower" })
-  means:report(report, "boundary_f1", { better = "higher" })
-  for _, stratum in ipairs(strata) do
-    means:report(report, "abs_rel_" .. stratum, { better = "lower" })
-    means:report(report, "coverage_" .. stratum, { better = "higher" })
+    drawings.series(report, ("Within %g GSD along the flight"):format(tau),
+      { label = "share of the truth", low = 0, high = 1 }, frames, ("within_total_%g_gsd"):format(tau))
   end
 end
 
@@ -114,22 +124,30 @@ return aib.protocol {
     tau = { kind = "list", of = "number", default = { 1, 2, 5 }, help = "multiples of the ground sampling distance" },
   },
   run = function(input, report)
-    local frames, means, undefined = depth_frames.pair(input), new_means(), {}
-    local camera_of = camera_finder(input)
+    local frames, scored, undefined, names = depth_frames.pair(input), {}, {}, {}
+    for i, frame in ipairs(frames) do names[i] = frame.name end
+    local camera_of, chosen = camera_finder(input), drawings.chosen(names)
     local progress <close> = aib.progress(#frames, "frames")
     for _, frame in ipairs(frames) do
       progress:step(frame.name)
       local raw <close> = aib.io.read_depth(frame.estimate, { scale = input.estimate_scale })
       local ref <close> = aib.io.read_depth(frame.reference, { scale = input.reference_scale, width = raw.width,
         height = raw.height, rule = input.rule })
-      local scored = report:attempt(function()
+      local numbers = report:attempt(function()
         local fit = input.align ~= "none" and aib.depth.fit({ align = input.align }):add(raw, ref):result()
-        add_frame(means, fit and raw:scaled(fit.scale) or raw, ref, camera_of(frame.name, raw), input, report)
-        return true
+        local est = fit and raw:scaled(fit.scale) or raw
+        drawings.frame(report, chosen, frame.name, est, ref)
+        return numbers_of(est, ref, camera_of(frame.name, raw), input, report)
       end)
-      if not scored then undefined[#undefined + 1] = frame.name end
+      if numbers then
+        numbers.name = frame.name
+        scored[#scored + 1] = numbers
+      else
+        undefined[#undefined + 1] = frame.name
+      end
     end
-    report_means(means, report, input)
+    report_means(scored, report, input)
     depth_frames.report_frames(frames, { undefined = undefined }, report)
+    draw(report, scored, input)
   end,
 }

@@ -12,6 +12,7 @@
 ---   numpy.savez("Plane1.npz", P=scipy.io.loadmat("Plane1.mat")["P"])
 --- Which points thinning keeps depends on its order, which the official script does not seed; here --seed does.
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 local function numbers_of(array)
   local numbers = {}
@@ -67,6 +68,7 @@ return aib.protocol {
     add("accuracy", to_reference:mean(), #to_reference)
     add("completeness", to_estimate:mean(), #to_estimate)
     add("overall", (to_reference:mean() + to_estimate:mean()) / 2, #to_reference)
+    drawings.points(report, observed, { reference = above }, to_reference, to_estimate, { 1 }, "mm")
     report:add("dtu.accuracy_beyond", to_reference:share_beyond(), { better = "lower", n = #to_reference })
     report:add("dtu.completeness_beyond", to_estimate:share_beyond(), { better = "lower", n = #to_estimate })
   end,

@@ -6,6 +6,7 @@
 ---
 ---   aib-lua eth3d reconstruction.ply scan_alignment.mlp --tolerances 0.01,0.02,0.05
 local aib = require "aib"
+local drawings = require "aib.evaluation.drawings"
 
 --- The matrix of a mesh in a MeshLab project: rows of four numbers.
 local function rows_of(text)
@@ -44,6 +45,23 @@ local function read_scans(input)
   return { { points = aib.io.read_cloud(input.reference), scanner = input.scanner } }
 end
 
+--- The scores against the tolerance, and the clouds in the colours of their distances, observed or not.
+local function draw(report, estimate, scans, scores, tolerances)
+  if not report:draws() then return end
+  local curves = {}
+  for _, part in ipairs { { "Accuracy", "accuracy" }, { "Completeness", "completeness" }, { "F-score", "f_score" } } do
+    local values = {}
+    for i, tolerance in ipairs(tolerances) do values[i] = scores[part[2]][tolerance] or 0 / 0 end
+    curves[#curves + 1] = { part[1], values }
+  end
+  drawings.against_threshold(report, tolerances, curves)
+  local clouds = {}
+  for i, scan in ipairs(scans) do clouds[i] = scan.points end
+  local reference = aib.cloud.joined(clouds)
+  local to_reference, to_estimate = aib.cloud.distances_both_ways(estimate, reference)
+  drawings.errors_of_points(report, estimate, reference, to_reference, to_estimate, tolerances[#tolerances])
+end
+
 return aib.protocol {
   name = "eth3d",
   title = "ETH3D multi-view evaluation",
@@ -61,7 +79,8 @@ return aib.protocol {
       help = "a scan point at exactly a tolerance is complete: but not at the largest, always, never" },
   },
   run = function(input, report)
-    local s = aib.cloud.eth3d(aib.io.read_cloud(input.estimate), read_scans(input), {
+    local estimate, scans = aib.io.read_cloud(input.estimate), read_scans(input)
+    local s = aib.cloud.eth3d(estimate, scans, {
       tolerances = input.tolerances, voxel = input.voxel, beam_radius = input.beam_radius,
       beam_half_angle_deg = input.beam_half_angle, rule = input.rule,
     })
@@ -75,5 +94,6 @@ return aib.protocol {
       end
       if not s.accuracy[tolerance] then report:note("accuracy", ("nothing observed at %g m"):format(tolerance)) end
     end
+    draw(report, estimate, scans, s, input.tolerances)
   end,
 }

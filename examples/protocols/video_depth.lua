@@ -44,7 +44,9 @@ local function score(folders, input, report)
   depth_frames.report(result, cell, how)
   cell:add("depth.scale", result and result.scale, { n = result and result.n_valid })
   depth_frames.report_frames(frames, result, cell)
-  if errors then depth_frames.write(errors, frames, options, input) end
+  if not errors then return nil end
+  depth_frames.draw(errors, frames, options, cell)
+  depth_frames.write(errors, frames, options, input)
   return result
 end
 

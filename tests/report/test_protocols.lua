@@ -51,6 +51,41 @@ return aib.test {
     t:equal(counts, { timeline = 2, frame = 14 })
   end,
 
+  ["kitti_odometry draws errors by length, paths over the widest axes, and the reference once"] = function(t)
+    local sparse = data .. "methods/glomap/crane/sparse/0"
+    local counts, report = drawn("kitti_odometry", { estimate = { sparse, sparse }, lengths = { 1, 2, 4 }, step = 1,
+      reference = data .. "gt/crane/poses" })
+    t:equal(counts, { curve = 7, timeline = 2, cameras = 2 })
+    local paths = {}
+    for _, figure in ipairs(require("aib.report.figures").of(report)) do
+      if figure.equal then paths[#paths + 1] = figure end
+    end
+    t:equal({ #paths, #paths[1].lines, paths[1].lines[1].label }, { 1, 3, "reference" })
+    t:equal({ paths[1].x.label, paths[1].y.label }, { "x", "y" })  -- the crane is flown round
+  end,
+
+  ["benchmarks of clouds draw curves, histograms and both clouds"] = function(t)
+    local reference = os.tmpname() .. ".ply"
+    local points = aib.sample.mesh(aib.io.read_mesh(data .. "gt/crane/mesh.ply"), { n = 5000 })
+    aib.io.write_cloud(reference, points)
+    local function with(own)
+      own.estimate, own.reference = crane .. "/fused.ply", reference
+      return own
+    end
+    local expected = { cloud = 2, curve = 5 }
+    t:equal((drawn("dtu", with { density = 0 })), expected)
+    t:equal((drawn("eth3d", with { tolerances = { 0.05, 0.2 } })), expected)
+    t:equal((drawn("da3_bench", with { dataset = "hiroom" })), expected)
+    os.remove(reference)
+  end,
+
+  ["video_depth and depth_surface draw their frames and timelines"] = function(t)
+    local folders = { estimate = crane .. "/depth", reference = data .. "gt/crane/depth" }
+    t:equal((drawn("video_depth", folders)), { timeline = 2, frame = 14 })
+    folders.cameras, folders.tau = data .. "gt/crane/poses", { 2, 5 }
+    t:equal((drawn("depth_surface", folders)), { timeline = 4, frame = 14 })
+  end,
+
   ["of many frames some are chosen, evenly"] = function(t)
     local names, n = {}, 0
     for i = 1, 1000 do names[i] = tostring(i) end

@@ -56,6 +56,30 @@ function M.trajectory(cell, est, ref)
   cell:cameras { estimate = est, reference = ref, errors = errors }
 end
 
+--- The two axes along which positions spread the most, in their order.
+local function widest_axes(positions)
+  local spread = {}
+  for k = 1, 3 do
+    local low, high = math.huge, -math.huge
+    for _, p in ipairs(positions) do low, high = math.min(low, p[k]), math.max(high, p[k]) end
+    spread[k] = high - low
+  end
+  if spread[1] <= math.min(spread[2], spread[3]) then return 2, 3 end
+  return 1, spread[2] <= spread[3] and 3 or 2
+end
+
+--- A path as a line over the two axes along which the reference spreads the most. `cell` is that of the method, or of
+--- all for the reference itself.
+function M.path(cell, trajectory, reference, label)
+  if not cell:draws() then return end
+  local a, b = widest_axes(reference:positions())
+  local at, values = {}, {}
+  for i, p in ipairs(trajectory:positions()) do at[i], values[i] = p[a], p[b] end
+  local names = { "x", "y", "z" }
+  cell:curve { title = "Paths", label = label, x = { label = names[a], unit = "m" },
+    y = { label = names[b], unit = "m" }, at = at, values = values, equal = true }
+end
+
 --- Position errors along the flight, { names =, values = }.
 function M.pose_series(cell, ape)
   if not ape or not cell:draws() then return end
@@ -90,21 +114,20 @@ function M.frame(cell, chosen, name, est, ref, transform)
   cell:attempt(function() cell:frame { name = name, estimate = est, reference = ref, transform = transform } end)
 end
 
+--- A field of frames along the flight, of those that have it.
+function M.series(cell, title, y, frames, field)
+  if not cell:draws() then return end
+  local names, values = {}, {}
+  for _, frame in ipairs(frames) do
+    if frame[field] then names[#names + 1], values[#values + 1] = frame.name, frame[field] end
+  end
+  if #names > 0 then cell:timeline { title = title, y = y, frames = names, values = values } end
+end
+
 --- Errors and coverage of depth along the flight.
 function M.depth_series(cell, frames)
-  if not cell:draws() then return end
-  for _, series in ipairs {
-    { "srmse", "Depth, sRMSE along the flight", { label = "sRMSE" } },
-    { "coverage", "Depth, coverage along the flight", { label = "coverage", low = 0, high = 1 } },
-  } do
-    local names, values = {}, {}
-    for _, frame in ipairs(frames) do
-      if frame[series[1]] then names[#names + 1], values[#values + 1] = frame.name, frame[series[1]] end
-    end
-    if #names > 0 then
-      cell:timeline { title = series[2], y = series[3], frames = names, values = values }
-    end
-  end
+  M.series(cell, "Depth, sRMSE along the flight", { label = "sRMSE" }, frames, "srmse")
+  M.series(cell, "Depth, coverage along the flight", { label = "coverage", low = 0, high = 1 }, frames, "coverage")
 end
 
 --- Adds how a frame's confidence foretells its errors to `curves`.
@@ -160,35 +183,39 @@ end
 local n_bins <const> = 50
 
 --- Densities of distances up to a bound, at the right ends of their bins.
-local function histogram(cell, title, distances, high)
+local function histogram(cell, title, distances, high, unit)
   local h = distances:histogram { max = high, bins = n_bins }
   local at, values = { 0 }, { 0 }
   for i, count in ipairs(h.counts) do at[i + 1], values[i + 1] = i * h.width, count / #distances end
-  cell:curve { title = title, x = { label = "distance", unit = "m" }, y = { label = "share of points" }, at = at,
-    values = values, steps = true, text = ("%d bins up to %g m."):format(n_bins, high) }
+  cell:curve { title = title, x = { label = "distance", unit = unit }, y = { label = "share of points" }, at = at,
+    values = values, steps = true, text = ("%d bins up to %g %s."):format(n_bins, high, unit) }
+end
+
+--- Shares of points against a threshold, a figure each; `curves` = { { "Precision", shares }, ... }.
+function M.against_threshold(cell, at, curves, unit)
+  if not cell:draws() then return end
+  for _, curve in ipairs(curves) do
+    cell:curve { title = curve[1] .. " against the threshold",
+      x = { label = "threshold", unit = unit or "m", scale = "log" },
+      y = { label = curve[1]:lower(), low = 0, high = 1 }, at = at, values = curve[2] }
+  end
+end
+
+--- Histograms of the distances up to a bound, and both clouds in their colours.
+function M.errors_of_points(cell, cloud, reference, to_reference, to_estimate, high, unit)
+  if not cell:draws() then return end
+  unit = unit or "m"
+  histogram(cell, "Accuracy, histogram", to_reference, high, unit)
+  histogram(cell, "Completeness, histogram", to_estimate, high, unit)
+  cell:cloud { role = "estimate", cloud = cloud, values = to_reference, label = "distance to the truth", unit = unit }
+  cell:cloud { role = "reference", cloud = reference, values = to_estimate, label = "distance to the estimate",
+    unit = unit, limit = 30000 }
 end
 
 --- Enough to colour faces by; the numbers of the tables are of all samples.
 local n_face_samples <const> = 10000
 
---- Precision, recall and F-score against the threshold, histograms, and the geometry in the colours of its errors.
---- `taus` are the protocol's thresholds.
-function M.points(cell, cloud, truth, to_reference, to_estimate, taus)
-  if not cell:draws() then return end
-  local middle = math.max(taus[#taus // 2 + 1] or 0.05, 1e-9)
-  local at = taus_between(middle / 20, middle * 20)
-  local precision, recall = shares(to_reference, at), shares(to_estimate, at)
-  local f_score = harmonic(precision, recall)
-  for _, curve in ipairs { { "Precision", precision }, { "Recall", recall }, { "F-score", f_score } } do
-    cell:curve { title = curve[1] .. " against the threshold", x = { label = "threshold", unit = "m", scale = "log" },
-      y = { label = curve[1]:lower(), low = 0, high = 1 }, at = at, values = curve[2] }
-  end
-  histogram(cell, "Accuracy, histogram", to_reference, 10 * middle)
-  histogram(cell, "Completeness, histogram", to_estimate, 10 * middle)
-  cell:cloud { role = "estimate", cloud = cloud, values = to_reference, label = "distance to the truth", unit = "m" }
-  cell:cloud { role = "reference", cloud = truth.reference, values = to_estimate, label = "distance to the estimate",
-    unit = "m", limit = 30000 }
-  if not truth.mesh then return end
+local function draw_mesh(cell, cloud, truth)
   local faces = {}
   if not truth.points then
     local samples = aib.cloud.random_subset(truth.reference, n_face_samples)
@@ -197,6 +224,19 @@ function M.points(cell, cloud, truth, to_reference, to_estimate, taus)
       { label = "accuracy", unit = "m", values = scores.accuracy } }
   end
   cell:mesh { mesh = truth.mesh, faces = faces }
+end
+
+--- Precision, recall and F-score against the threshold, histograms, and the geometry in the colours of its errors.
+--- `taus` are the protocol's thresholds; `unit` is that of the clouds, metres where none is told.
+function M.points(cell, cloud, truth, to_reference, to_estimate, taus, unit)
+  if not cell:draws() then return end
+  local middle = math.max(taus[#taus // 2 + 1] or 0.05, 1e-9)
+  local at = taus_between(middle / 20, middle * 20)
+  local precision, recall = shares(to_reference, at), shares(to_estimate, at)
+  M.against_threshold(cell, at, { { "Precision", precision }, { "Recall", recall },
+    { "F-score", harmonic(precision, recall) } }, unit)
+  M.errors_of_points(cell, cloud, truth.reference, to_reference, to_estimate, 10 * middle, unit)
+  if truth.mesh then draw_mesh(cell, cloud, truth) end
 end
 
 return M

@@ -62,7 +62,7 @@ end
 
 local function add_curve(figure_of, view)
   local figure = figure_of("curve", view.title, view.group, function()
-    return { x = view.x, y = view.y, text = view.text, steps = view.steps, lines = {} }
+    return { x = view.x, y = view.y, text = view.text, steps = view.steps, equal = view.equal, lines = {} }
   end)
   table.insert(figure.lines, { label = line_label(view), group = view.group, x = view.at, y = view.values })
 end

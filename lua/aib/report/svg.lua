@@ -125,7 +125,8 @@ function plot:line(line, i, steps)
   local color, dash = M.manner(line.place or i)
   if line.colors then return self:coloured(line) end
   self:add(stroke(self:path(line, steps), { stroke = line.color or color, ["stroke-width"] = line.width or 2,
-    ["stroke-dasharray"] = line.dash or dash, ["stroke-linejoin"] = "round", ["stroke-linecap"] = "round" }))
+    ["stroke-dasharray"] = line.dash or dash, ["stroke-linejoin"] = "round", ["stroke-linecap"] = "round",
+    ["data-line"] = self.is_marked and i }))
 end
 
 --- A path whose pieces have the colours of the points where they end.
@@ -220,6 +221,7 @@ function M.lines(chart, standalone)
     self.x.text = function(tick) return ((chart.frames[math.tointeger(tick)] or ""):gsub("%.[^.]*$", "")) end
   end
   self:frame(chart)
+  self.is_marked = chart.equal  -- a page shows and hides the lines of what stays a drawing
   for i, line in ipairs(chart.lines) do self:line(line, i, chart.steps) end
   return document(chart, width, height, table.concat(self.out), standalone)
 end

@@ -14,7 +14,8 @@
 ---   cell:mesh { mesh = mesh, faces = { { label = "completeness", unit = "m", values = list } } }
 ---   cell:cameras { estimate = trajectory, reference = trajectory, missing = names }
 ---
---- Lines of one title, in groups that differ in the method alone, share a figure.
+--- Lines of one title, in groups that differ in the method alone, share a figure. A curve is drawn in steps where
+--- `steps` is true, and with the same length of a unit on both axes where `equal` is.
 local json = require "aib.json"
 local packed = require("aib").packed
 local suggest = require "aib.suggest"
@@ -23,7 +24,7 @@ local views = {}
 
 local fields <const> = {
   curve = { title = "string", x = "table", y = "table", at = "table", values = "table", label = "string",
-    text = "string", steps = "boolean" },
+    text = "string", steps = "boolean", equal = "boolean" },
   timeline = { title = "string", y = "table", frames = "table", values = "table", label = "string", text = "string" },
   interval = { title = "string", unit = "string", label = "string", value = "number", low = "number", high = "number",
     text = "string" },
@@ -32,8 +33,8 @@ local fields <const> = {
   mesh = { mesh = "userdata", faces = "table" },
   cameras = { estimate = "userdata", reference = "userdata", missing = "table", errors = "table" },
 }
-local optional <const> = { label = true, text = true, steps = true, unit = true, transform = true, values = true,
-  limit = true, faces = true, missing = true, errors = true }
+local optional <const> = { label = true, text = true, steps = true, equal = true, unit = true, transform = true,
+  values = true, limit = true, faces = true, missing = true, errors = true }
 local needs_values <const> = { curve = true, timeline = true }
 
 local function check(kind, spec, level)
@@ -56,7 +57,7 @@ local pack = {}
 
 function pack.curve(spec)
   return { title = spec.title, x = spec.x, y = spec.y, at = as_list(spec.at), values = as_list(spec.values),
-    label = spec.label, text = spec.text, steps = spec.steps }
+    label = spec.label, text = spec.text, steps = spec.steps, equal = spec.equal }
 end
 
 function pack.timeline(spec)

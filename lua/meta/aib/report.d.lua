@@ -84,7 +84,7 @@ function instance:draws() end
 function instance:draw() end
 
 ---A line of a figure. Lines of one title, whose groups differ in the method alone, share a figure.
----@param spec { title: string, x: aib.report.Axis, y: aib.report.Axis, at: number[], values: number[], label?: string, text?: string, steps?: boolean }
+---@param spec { title: string, x: aib.report.Axis, y: aib.report.Axis, at: number[], values: number[], label?: string, text?: string, steps?: boolean, equal?: boolean }  # equal: the same length of a unit on both axes
 function instance:curve(spec) end
 
 ---Numbers of frames along the flight; a click opens the frame where there is one.

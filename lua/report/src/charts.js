@@ -111,10 +111,27 @@ class Chart {
   }
 }
 
+/// What runs to and fro along x stays a drawing, whose lines come and go.
+class Drawing {
+  constructor(figure, element) {
+    this.figure = figure;
+    this.element = element;
+    this.filter();
+  }
+
+  draw() {}
+
+  filter() {
+    this.figure.lines.forEach((line, i) => {
+      this.element.querySelector(`[data-line="${i + 1}"]`)?.toggleAttribute("hidden", !isShown(line.group));
+    });
+  }
+}
+
 export function mountCharts() {
   for (const figure of report.figures) {
     const element = document.getElementById(figure.id);
-    if (figure.lines?.length > 0 && element) charts.push(new Chart(figure, element));
+    if (figure.lines?.length > 0 && element) charts.push(new (figure.equal ? Drawing : Chart)(figure, element));
   }
   onFilter(() => charts.forEach((chart) => chart.filter()));
 }
