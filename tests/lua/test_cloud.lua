@@ -172,6 +172,33 @@ return aib.test {
     t:equal(info.floor < 0.2, true)
   end,
 
+  ["readers take limits"] = function(t)
+    local path = os.tmpname()
+    aib.system.write_text(path .. ".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    aib.io.write_depth(path .. ".pfm", aib.depth.map { { 1, 2 }, { 3, 4 } })
+    aib.io.write_image(path .. ".png", aib.raster.labels { { 1, 2 }, { 3, 4 } })
+    local function says(sentence, reader, extension, options)
+      t:raises(path .. extension .. ": " .. sentence, aib.io[reader], path .. extension, options)
+    end
+    says("3 points, at most 2 are allowed (max_points)", "read_cloud", ".obj", { max_points = 2 })
+    says("3 vertices, at most 2 are allowed (max_points)", "read_mesh", ".obj", { max_points = 2 })
+    says("depth: 2x2 pixels, at most 3 are allowed (max_pixels)", "read_depth", ".pfm", { max_pixels = 3 })
+    says("png: 2x2 pixels, at most 3 are allowed (max_pixels)", "read_image", ".png", { max_pixels = 3 })
+    t:equal(#aib.io.read_cloud(path .. ".obj", { max_points = 3, max_ratio = 10, max_bytes = 100 }), 3)
+    for _, extension in ipairs { "", ".obj", ".pfm", ".png" } do os.remove(path .. extension) end
+  end,
+
+  ["a cloud is written piece by piece, and once"] = function(t)
+    local path = os.tmpname() .. ".ply"
+    local writer = aib.io.cloud_writer(path):add(on_x(0, 1)):add(on_x(2))
+    writer:commit()
+    t:equal(#aib.io.read_cloud(path), 3)
+    t:raises("an open stream expected, this is closed", writer.commit, writer)
+    t:raises("an open stream expected, this is closed", writer.add, writer, on_x(3))
+    t:equal(#aib.io.read_cloud(path), 3)
+    os.remove(path)
+  end,
+
   ["a threshold that is no number is refused"] = function(t)
     t:raises("a threshold is not a number (NaN)", aib.cloud.compare, on_x(0), on_x(1), { tau = 0 / 0 })
   end,

@@ -132,6 +132,16 @@ return aib.test {
     if pcall(collectgarbage, "stop") or pcall(collectgarbage, "generational") then print("ESCAPED collector") end
   ]],
 
+  ["what is refused is said in a sentence"] = confined(function(t)
+    local text, code = run [[
+      print(select(2, pcall(setmetatable, {}, { __gc = print })))
+      print(select(2, pcall(collectgarbage, "stop")))
+    ]]
+    t:equal({ text, code }, {
+      "sandbox: a metatable without __gc expected\nsandbox: collectgarbage 'collect' or 'count' expected\n", 0,
+    })
+  end),
+
   ["the methods of strings and the types of aib are not replaced"] = attack [[
     local aib = require "aib"
     string.format = function() return "ESCAPED" end

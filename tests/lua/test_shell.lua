@@ -113,6 +113,25 @@ return aib.test {
     t:contains(run { "--list" }, "asset_inspection")
   end,
 
+  ["every installed protocol has a title, help, every format of results, and refuses other options"] = function(t)
+    local list, n = run { "--list" }, 0
+    for line in list:gmatch "[^\n]+" do
+      local name, title = line:match "^(%S+)%s+(.+)$"
+      t:check(title, line)
+      local text, code = run { name, "--help" }
+      t:equal(code, 0, name)
+      t:contains(text, "usage: aib-lua " .. name)
+      for _, option in ipairs { "--json", "--csv", "--markdown", "--latex", "--html", "--threads", "--quiet" } do
+        t:contains(text, "\n  " .. option, name)
+      end
+      text, code = run { name, "--no-such-option" }
+      t:equal(code, 2, name)
+      t:contains(text, name .. ": unknown option '--no-such-option'")
+      n = n + 1
+    end
+    t:check(n >= 18, n .. " protocols")
+  end,
+
   ["a protocol takes the shell's flags after its name, too"] = function(t)
     local source = "local aib = require 'aib' return aib.protocol { name = 'p', inputs = {}, "
       .. "run = function(_, report) report:add('x', 1) end }"

@@ -135,6 +135,19 @@ return aib.test {
     t:contains(help.text(nil), "help(aib.pose.auc)")
   end,
 
+  ["help knows every bound function, by its value"] = function(t)
+    local help, n = require "aib.help", 0
+    for name in pairs(bound()) do
+      local value = name:find "^aib%.[%w_.]+$" and exists(name) and aib
+      for part in value and name:sub(5):gmatch "[^.]+" or function() end do value = value[part] end
+      if type(value) == "function" then
+        t:equal(help.text(value):match "^[%w_.]+%(", name .. "(")
+        n = n + 1
+      end
+    end
+    t:check(n > 100, n .. " functions")
+  end,
+
   ["the Tab key offers members, methods, options and words"] = function(t)
     local complete = require("aib.completion").complete
     rawset(_G, "aib", aib)  -- as at the prompt

@@ -133,6 +133,9 @@ function io.write_array(path, value) end
 ---@field up? "z"|"y"  # axis that points up in the file; "y" turns (x, y, z) to (x, -z, y)
 ---@field splats? "refuse"|"centres"  # PLY files of 3D Gaussian splats
 ---@field key? string  # NPZ only: the array
+---@field max_points? integer  # a file of more is refused
+---@field max_ratio? number  # NPZ: an array that inflates more, 100 times, is refused ...
+---@field max_bytes? integer  # ... where it needs more than this, 2^30
 
 ---The points of a PLY, PCD, XYZ, CSV, PTS, LAS, NPY, NPZ (N x 3) or GLB file; of a mesh file (PLY,
 ---OBJ, GLB) its vertices. Points that are not finite stay, `warnings` counts them. LAZ and E57 are
@@ -167,9 +170,9 @@ function cloud_writer:commit() end
 function io.cloud_writer(path) end
 
 ---The triangles of a PLY, OBJ, STL or GLB file; polygons become fans. Face labels of PLY and the
----nodes of GLB become labels.
+---nodes of GLB become labels. A file of more than max_points vertices or triangles is refused.
 ---@param path string
----@param options? { up?: "z"|"y" }
+---@param options? { up?: "z"|"y", max_points?: integer }
 ---@return aib.Mesh
 function io.read_mesh(path, options) end
 
@@ -191,6 +194,9 @@ function io.write_mesh(path, mesh, options) end
 ---@field raw_width? integer  # files without header (ETH3D): their size
 ---@field raw_height? integer
 ---@field range_camera? aib.Camera  # the file holds distances along this camera's rays
+---@field max_pixels? integer  # a larger map is refused; 2^27
+---@field max_ratio? number  # NPZ: an array that inflates more, 100 times, is refused ...
+---@field max_bytes? integer  # ... where it needs more than this, 2^30
 
 ---Planar depth of an EXR, PFM, NPY, NPZ, 16-bit PNG, COLMAP .bin or OpenMVS .dmap file. Background
 ---(Blender's 1e10, 65504 in half channels) becomes 0; `warnings` says what was removed or assumed.
@@ -239,9 +245,10 @@ function io.write_depth(path, depth, options) end
 ---@return string[]
 function io.exr_channels(path) end
 
----A PNG or JPEG: labels where it is gray (a number a pixel, as stored), else colours.
+---A PNG or JPEG: labels where it is gray (a number a pixel, as stored), else colours. One of more than
+---max_pixels (2^27) is refused.
 ---@param path string
----@param options? { as?: "labels"|"color" }  # "labels" also takes the indices of a palette
+---@param options? { as?: "labels"|"color", max_pixels?: integer }  # "labels" also takes the indices of a palette
 ---@return aib.Image|aib.LabelImage
 function io.read_image(path, options) end
 
