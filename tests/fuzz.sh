@@ -6,41 +6,59 @@
 # zoo and those that were found before, then made-up ones:
 #
 #   tests/fuzz.sh MINUTES [READER ...]
+#   tests/fuzz.sh --totals               what all runs came to, a line each reader
 #
 #   MINUTES   in all, shared by the readers (a fraction is fine)
 #   READER    depth.exr, mesh.ply, ...; without one: all. `calls` gives made-up values to every
 #             function of the scripting interface, by build/lua/aib-lua
 #
-# Builds build-fuzz/ with clang and libFuzzer. Seeds are the bundled benchmark's files, those in
-# tests/fuzz/seeds/, and those of the zoo where it is. What was found stays in build-fuzz/findings/ (and belongs into
-# tests/fuzz/regressions/, once mended), the corpus in build-fuzz/corpus/.
+# Builds with clang and libFuzzer in build-fuzz/, or in the folder AIB_FUZZ, which keeps
+#   corpus/     from which the next run goes on; at first the bundled benchmark's files, those in
+#               tests/fuzz/seeds/, and those of the zoo where it is
+#   findings/   which belong into tests/fuzz/regressions/, once mended
+#   ledger      a line each run: reader, seconds of processor time, runs, edges, findings
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[ $# -ge 1 ] || { echo "usage: tests/fuzz.sh MINUTES [READER ...]" >&2; exit 2; }
+[ $# -ge 1 ] || { echo "usage: tests/fuzz.sh MINUTES|--totals [READER ...]" >&2; exit 2; }
 minutes=$1
 shift
+work=${AIB_FUZZ:-build-fuzz}
+
+totals() {
+  [ -f "$work/ledger" ] || { echo "$work/ledger: no run so far"; return; }
+  echo "target            minutes         runs   edges  findings"
+  awk '{ s[$1] += $2; n[$1] += $3; edges[$1] = $4; found[$1] += $5 }
+    END { for (t in n) printf "%-16s %8.1f %12d %7s %9d\n", t, s[t] / 60, n[t], edges[t], found[t] }' \
+    "$work/ledger" | sort
+  awk '{ targets[$1]; s += $2; n += $3; found += $5 }
+    END { printf "%-16s %8.1f %12d %7s %9d\n", length(targets) " in all", s / 60, n, "", found }' "$work/ledger"
+}
+[ "$minutes" != --totals ] || { totals; exit; }
 
 [ -n "$(find /usr/lib/llvm-*/lib/clang -name 'libclang_rt.fuzzer-x86_64.a' 2>/dev/null)" ] || {
   echo "SKIPPED: fuzzing: clang's runtime library (libclang-rt-14-dev) is not installed"
   exit 77
 }
-mkdir -p build-fuzz/findings
-program=build-fuzz/fuzz_readers
+mkdir -p "$work/findings"
+program=$work/fuzz_readers
 libraries=(eigen3 nanoflann zlib libdeflate spng libjpeg nlohmann_json pugixml)
-if [ ! -x $program ] || [ -n "$(find include tests/fuzz -newer $program -name '*.[hc]pp' -print -quit)" ]; then
+if [ ! -x "$program" ] || [ -n "$(find include tests/fuzz -newer "$program" -name '*.[hc]pp' -print -quit)" ]; then
   # shellcheck disable=SC2046
   clang++ -std=c++20 -g1 -O1 -ffp-contract=off -fsanitize=fuzzer,address,undefined \
     -fno-sanitize-recover=undefined -D_GLIBCXX_ASSERTIONS -Iinclude \
     -DAIB_WITH_{EXR,NPZ,PNG,JPEG,JSON,XML,LIBDEFLATE} $(pkg-config --cflags "${libraries[@]}") \
-    tests/fuzz/fuzz_readers.cpp -o $program $(pkg-config --libs "${libraries[@]}") -pthread
+    tests/fuzz/fuzz_readers.cpp -o "$program" $(pkg-config --libs "${libraries[@]}") -pthread
 fi
 
 aib_lua=${AIB_LUA:-build/lua/aib-lua}
 readers=("$@")
 if [ ${#readers[@]} = 0 ]; then
-  mapfile -t readers < <($program 2>/dev/null)
+  mapfile -t readers < <("$program" 2>/dev/null)
   [ ! -x "$aib_lua" ] || readers+=(calls)
 fi
+# Files that are read lie in memory where that is there.
+away=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
+trap 'rm -rf "$away"' EXIT
 seconds=$(python3 -c "print(max(1, int(60 * $minutes / ${#readers[@]})))")
 echo "fuzz: ${#readers[@]} targets, $seconds s each"
 
@@ -68,24 +86,41 @@ known_of() {
 
 # reader_run READER ARGUMENT ...
 reader_run() {
-  AIB_READER=$1 AIB_MODEL=examples/data/methods/glomap/crane/sparse/3 \
+  TMPDIR=$away AIB_READER=$1 AIB_MODEL=examples/data/methods/glomap/crane/sparse/3 \
     UBSAN_OPTIONS=print_stacktrace=1 \
     ASAN_OPTIONS=detect_leaks=0:hard_rss_limit_mb=2048:max_allocation_size_mb=1100:allocator_may_return_null=0 \
-    $program "${@:2}" -timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=1100 \
-    -artifact_prefix="build-fuzz/findings/$1-"
+    "$program" "${@:2}" -timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=1100 \
+    -artifact_prefix="$work/findings/$1-"
 }
 
 # Prints how many known files were read, or fails.
 replay() {
   local known
   mapfile -t known < <(known_of "$1")
-  [ ${#known[@]} = 0 ] || reader_run "$1" "${known[@]}" >>"build-fuzz/$1.log" 2>&1 || return 1
+  [ ${#known[@]} = 0 ] || reader_run "$1" "${known[@]}" >>"$work/$1.log" 2>&1 || return 1
   echo ${#known[@]}
 }
 
+# Processor time between begin and end: a run that was stopped for a while counts for what it did.
+# (`times` in a subshell tells of that alone, so it is not piped.)
+begin() { times >"$work/begin"; }
+end() { times >"$work/end"; }
+spent() {
+  awk 'FNR == 2 { for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s[FILENAME] += 60 * t[1] + t[2] } }
+    END { printf "%.1f", s[ARGV[2]] - s[ARGV[1]] }' "$work/begin" "$work/end"
+}
+
+# conclude TARGET RUNS EDGES STATUS WHERE: the line of a run, and its place in the ledger.
+conclude() {
+  echo "$1 $(spent) $2 $3 $(($4 != 0))" >>"$work/ledger"
+  printf '%-16s %9s runs %7s edges  %s\n' "${@:1:3}" "$([ "$4" = 0 ] && echo 'nothing found' || echo "FOUND: see $5")"
+  return "$4"
+}
+
 fuzz_reader() {
-  local reader=$1 log=build-fuzz/$1.log corpus=build-fuzz/corpus/$1 seed known runs coverage status=0
+  local reader=$1 log=$work/$1.log corpus=$work/corpus/$1 seed known runs edges status=0
   : >"$log"
+  begin
   known=$(replay "$reader") || status=1
   if [ ! -d "$corpus" ]; then
     mkdir -p "$corpus"
@@ -93,32 +128,29 @@ fuzz_reader() {
   fi
   [ $status != 0 ] || reader_run "$reader" "$corpus" -max_total_time="$seconds" -max_len=65536 \
     -print_final_stats=1 >>"$log" 2>&1 || status=$?
+  end
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
-  coverage=$(grep -oE 'cov: [0-9]+ ft: [0-9]+' "$log" | tail -n 1 | tr -d 'a-z:')
-  # shellcheck disable=SC2086
-  printf '%-16s %5s known %9s runs  coverage %5s edges %6s features  %s\n' "$reader" "${known:-?}" "${runs:-?}" \
-    ${coverage:-? ?} "$([ $status = 0 ] && echo 'nothing found' || echo "FOUND: see $log")"
-  return $status
+  edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1 | tr -dc 0-9)
+  conclude "$reader" $((${runs:-0} + ${known:-0})) "${edges:--}" $status "$log"
 }
 
 fuzz_calls() {
-  local script log=$PWD/build-fuzz/calls.log program away end seed=0 status=0
-  script=$PWD/tests/fuzz/fuzz_calls.lua
+  local script=$PWD/tests/fuzz/fuzz_calls.lua log program first seed stop_at status=0
+  log=$(realpath "$work")/calls.log
   program=$(realpath "$aib_lua")
-  away=$(mktemp -d)
-  end=$(($(date +%s) + seconds))
+  first=$(awk '$1 == "calls" { n += $3 } END { print n / 5000 }' "$work/ledger" 2>/dev/null || true)
+  seed=${first:=0}
+  stop_at=$(($(date +%s) + seconds))
   : >"$log"
-  while [ $status = 0 ] && { [ $seed = 0 ] || [ "$(date +%s)" -lt $end ]; }; do
+  begin
+  while [ $status = 0 ] && { [ "$seed" = "$first" ] || [ "$(date +%s)" -lt $stop_at ]; }; do
     seed=$((seed + 1))
     (cd "$away" && ulimit -v 4000000 && AIB_FUZZ_TRACE=1 timeout 120 "$program" "$script" 5000 $seed) >>"$log" 2>"$log.last" || status=$?
   done
-  rm -rf "$away"
-  printf '%-16s %26s calls  %s\n' calls $((5000 * seed)) \
-    "$([ $status = 0 ] && echo 'nothing found' || echo "FOUND: seed $seed, exit $status, see $log")"
-  return $status
+  end
+  conclude calls $((5000 * (seed - first))) - $status "$log, seed $seed"
 }
 
-trap 'rm -rf /dev/shm/aib-fuzz-*' EXIT  # a finding leaves the file that it was read from
 failed=0
 for reader in "${readers[@]}"; do
   case $reader in

@@ -162,7 +162,7 @@ local function finding(name, what)
   print(("FOUND  %s: %s"):format(name, what))
 end
 
-local good_kinds <const> = { argument = true, io = true, format = true, undefined = true }
+local good_kinds <const> = { argument = true, io = true, output = true, format = true, undefined = true }
 
 --- The function of a name such as "aib.pose.auc" or "cloud:bounds", and whether it takes an object first.
 local function resolve(name)

@@ -95,11 +95,9 @@ const target& chosen() {
   std::_Exit(name ? 2 : 0);
 }
 
-/// A folder of this process, in memory where that is there.
+/// A folder of this process.
 fs::path own_folder() {
-  const fs::path memory = "/dev/shm";
-  const fs::path base = fs::is_directory(memory) ? memory : fs::temp_directory_path();
-  const fs::path folder = base / ("aib-fuzz-" + std::to_string(getpid()));
+  const fs::path folder = fs::temp_directory_path() / ("aib-fuzz-" + std::to_string(getpid()));
   fs::create_directories(folder);
   static const fs::path kept = folder;
   std::atexit([] { fs::remove_all(kept); });
