@@ -56,7 +56,8 @@ return aib.test {
     t:equal(#aib.units.joined { shard(2, a), shard(2, b) }, 2)
     t:raises("shard.json: part 1, a, comes twice", aib.units.joined, { shard(2, a), shard(2, a) })
     t:raises("shard 2/2 is missing", aib.units.joined, { shard(2, a) })
-    t:raises("shard.json: a shard of the same run as shard.json expected", aib.units.joined, { shard(2, a), shard(3, b) })
+    t:raises("shard.json: a shard of the same run as shard.json expected", aib.units.joined,
+      { shard(2, a), shard(3, b) })
     local none = shard(2, b)
     none.result.shard = nil
     t:raises("shard.json: a shard expected, made by --shard INDEX/COUNT", aib.units.joined, { shard(2, a), none })
@@ -67,7 +68,7 @@ return aib.test {
     t:equal(failure_of(t, function(c) c:equal({ 1, x = "2" }, { 1, x = 2 }) end),
       'expected {[1] = 1, x = 2}, found {[1] = 1, x = "2"}')
     t:equal(failure_of(t, function(c) c:near("a", 1, 0) end), 'expected a number, found "a"')
-    t:equal(failure_of(t, function(c) c:near(0 / 0, 1, 0.5) end):match "^expected 1 within 0.5, found", "expected 1 within 0.5, found")
+    t:contains(failure_of(t, function(c) c:near(0 / 0, 1, 0.5) end), "expected 1 within 0.5, found")
     t:equal(failure_of(t, function(c) c:contains("abc", "d") end), 'expected a text with "d", found "abc"')
     t:equal(failure_of(t, function(c) c:raises("x", function() end) end), 'expected an error with "x", found none')
     t:raises("aib.test: a table of cases expected, found nil", aib.test, nil)
