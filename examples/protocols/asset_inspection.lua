@@ -65,8 +65,8 @@ end
 --- AUC is of pairs of images, chamfer distance and F1 are of points, so that nothing in them is paired.
 local paired <const> = {
   { "srmse", "depth.srmse" }, { "coverage", "depth.coverage" }, { "abs_rel", "depth.abs_rel" },
-  { "delta1", "depth.delta1" }, { "ape", "pose.ape", unit = "m" }, { "registration_rate", "pose.registered" },
-  { "focal_mre", "camera.focal_error" },
+  { "delta1", "depth.delta1" }, { "ape", "pose.ape_rmse", unit = "m" }, { "registration_rate", "pose.registration_rate" },
+  { "focal_mre", "camera.focal_mre" },
 }
 
 --- Changes of every metric that is paired over the conditions of one scene for one method.
@@ -140,7 +140,7 @@ local function add_unit(unit, input, report, files)
     for metric, frames in pairs(part.frames) do found[1].frames[metric] = frames end
   end
   if report.store.shard then return found end  -- it may not have all parts of the unit
-  drawings.pose_series(report:within(unit[1].group), found[1].frames["pose.ape"])
+  drawings.pose_series(report:within(unit[1].group), found[1].frames["pose.ape_rmse"])
   for _, series in ipairs(joined_rows(unit)) do
     local cell = report:within(unit[1].group):within { method = series.method }
     if #series.rows > 0 then

@@ -103,14 +103,17 @@ local function frames_of(result)
   return found
 end
 
---- Differences of the frames that both have, in the order of the first.
+--- Differences of the frames that both have, in the order of the first; none where all are equal.
 local function paired_differences(a, b)
-  local of_b, differences = {}, {}
+  local of_b, differences, any = {}, {}, false
   for i, name in ipairs(b.names) do of_b[name] = b.values[i] end
   for i, name in ipairs(a.names) do
-    if of_b[name] then differences[#differences + 1] = of_b[name] - a.values[i] end
+    if of_b[name] then
+      differences[#differences + 1] = of_b[name] - a.values[i]
+      any = any or of_b[name] ~= a.values[i]
+    end
   end
-  return differences
+  return any and differences or {}
 end
 
 local significance <const> = { "difference", "low", "high" }
@@ -154,19 +157,16 @@ local function draw_frames(report, results, labels, refused)
   end
 end
 
-local function significance_table(report, metrics)
-  if #metrics == 0 then return end
-  local columns = {}
+local function significance_tables(report, metrics)
   for _, metric in ipairs(metrics) do
-    for _, what in ipairs(significance) do
-      columns[#columns + 1] = { ("%s, %s"):format(metric, what), label = ("%s, %s"):format(metric, what) }
-    end
+    local columns = {}
+    for i, what in ipairs(significance) do columns[i] = { ("%s, %s"):format(metric, what), label = what } end
+    report:table {
+      title = ("Differences of frames from the first file, %s"):format(metric), metrics = columns,
+      down = { "scene", "condition", "method", "file" }, across = { "metric" },
+      notes = { "Interval of 95 %; neighbouring frames are drawn together." },
+    }
   end
-  report:table {
-    title = "Differences of frames from the first file", metrics = columns,
-    down = { "scene", "condition", "method", "file" }, across = { "metric" },
-    notes = { "Interval of 95 %; neighbouring frames are drawn together." },
-  }
 end
 
 --- Ranks of values, the best first; equal ones share the mean of their places.
@@ -272,7 +272,7 @@ return aib.protocol {
       }
     end
     report:note(("%d of %d numbers are equal"):format(equal, compared))
-    significance_table(report, add_significance(report, results, labels, refused, input))
+    significance_tables(report, add_significance(report, results, labels, refused, input))
     draw_frames(report, results, labels, refused)
     if input.ranks then
       for i, result in ipairs(results) do add_ranks(report, result, labels[i]) end

@@ -115,6 +115,7 @@ return aib.test {
     report, notes = compared(reversed)
     t:check(value_of(report, "depth.srmse, low", "b") < 0 and value_of(report, "depth.srmse, high", "b") > 0)
     t:contains(notes, "no more than chance tells it from a")
+    t:equal(value_of(compared(series(1)), "depth.srmse, difference", "b"), nil)  -- equal frames have nothing to tell
   end,
 
   ["methods are ranked; equal ones share their places"] = function(t)

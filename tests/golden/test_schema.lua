@@ -76,7 +76,7 @@ return aib.test {
     t:check(#result.records > 300)
     local metrics = {}
     for _, frames in ipairs(result.frames) do metrics[frames.metric] = (metrics[frames.metric] or 0) + 1 end
-    t:equal({ metrics["depth.srmse"], metrics["pose.ape"], metrics["pose.registered"] }, { 5, 6, 6 })
+    t:equal({ metrics["depth.srmse"], metrics["pose.ape_rmse"], metrics["pose.registration_rate"] }, { 5, 6, 6 })
   end,
 
   ["a shard follows the schema"] = function(t)

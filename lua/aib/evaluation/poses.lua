@@ -71,11 +71,11 @@ local function score_angles(model, truth, input, cell)
   end
 end
 
---- Position errors of aligned frames by name, for `frames` of a part.
+--- Position errors of aligned frames by name, for `frames` of a part: under the name of the record that they give.
 function M.add_ape(frames, ape, ref)
   local names = aib.json.list()
   for i, place in ipairs(ape.index) do names[i] = ref.names[place] end
-  frames["pose.ape"] = { names = names, values = aib.json.list(table.move(ape.errors, 1, #ape.errors, 1, {})) }
+  frames["pose.ape_rmse"] = { names = names, values = aib.json.list(table.move(ape.errors, 1, #ape.errors, 1, {})) }
 end
 
 --- For each image of the scene whether it is registered, 1 or 0.
@@ -85,7 +85,7 @@ function M.add_registered(frames, trajectory, truth, rules)
     is_missing[name] = true
   end
   for i, name in ipairs(truth.names) do names[i], values[i] = name, is_missing[name] and 0 or 1 end
-  frames["pose.registered"] = { names = names, values = values }
+  frames["pose.registration_rate"] = { names = names, values = values }
 end
 
 local function are_equal(values)
@@ -105,7 +105,7 @@ function M.add_focal(cameras, truth, cell, frames)
   if not found or not frames then return end
   local names, values = aib.json.list(suggest.keys(found.each)), aib.json.list()
   for i, name in ipairs(names) do values[i] = found.each[name] end
-  if not are_equal(values) then frames["camera.focal_error"] = { names = names, values = values } end
+  if not are_equal(values) then frames["camera.focal_mre"] = { names = names, values = values } end
 end
 
 local function score_model(model, truth, input, cell, frames)
