@@ -20,6 +20,30 @@ local function folder_of(files)
   return setmetatable({ path = path }, { __close = function() os.execute("rm -r " .. path) end })
 end
 
+local function crc32(text)
+  local crc = 0xffffffff
+  for i = 1, #text do
+    crc = crc ~ text:byte(i)
+    for _ = 1, 8 do crc = crc >> 1 ~ (crc & 1) * 0xedb88320 end
+  end
+  return crc ~ 0xffffffff
+end
+
+--- The bytes of an NPZ file of arrays, each { name, shape, data, type }, as numpy.savez stores them.
+local function npz(arrays)
+  local files, index = "", ""
+  for _, array in ipairs(arrays) do
+    local name, shape, content, kind = array[1] .. ".npy", table.unpack(array, 2)
+    local head = ("{'descr': '%s', 'fortran_order': False, 'shape': %s, }"):format(kind, shape)
+    head = head .. (" "):rep(-(#head + 11) % 64) .. "\n"
+    local npy = "\x93NUMPY\1\0" .. ("<s2"):pack(head) .. content
+    local about = ("<I2I2I2I2I2I4I4I4I2I2"):pack(20, 0, 0, 0, 0, crc32(npy), #npy, #npy, #name, 0)
+    index = index .. "PK\1\2\20\0" .. about .. ("<I2I2I2I4I4"):pack(0, 0, 0, 0, #files) .. name
+    files = files .. "PK\3\4" .. about .. name .. npy
+  end
+  return files .. index .. "PK\5\6" .. ("<I2I2I2I2I4I4I2"):pack(0, 0, #arrays, #arrays, #index, #files, 0)
+end
+
 --- Height of the first camera in the world of its batch, which every reader must agree on.
 local function centre(batch, i) return batch.trajectory[i].centre end
 
@@ -152,6 +176,39 @@ return aib.test {
     t:equal(centre(batch, 1), { 5, 6, 7 })
     t:equal(batch.cameras["a.png"].fx, 3)
     t:equal(batch.depth(1):at(2, 1), 2.5)
+
+    -- The later layout: halves times a power of two, and one more number in the header.
+    local d2 = ("<c2BbI4I4I4I4fff"):pack("D2", 1, 1, 4, 2, 2, 1, 0.5, 9, 1) .. header:sub(29)
+    local later <close> = folder_of { ["depth0000.dmap"] = d2 .. ("<I2I2"):pack(0x3A00, 0x3D00) }  -- 0.75, 1.25
+    batch = aib.method.open(later.path).batches[1]
+    t:equal({ batch.names, centre(batch, 1), batch.cameras["a.png"].fx }, { { "a.png" }, { 5, 6, 7 }, 3 })
+    t:equal({ batch.depth(1):at(1, 1), batch.depth(1):at(2, 1) }, { 1.5, 2.5 })
+  end,
+
+  ["OpenDroneMap: depth maps that OpenMVS made of it are named"] = function(t)
+    local folder <close> = folder_of {
+      ["opensfm/reconstruction.json"] = [=[[{ "cameras": { "c": { "projection_type": "perspective", "width": 4,
+        "height": 2, "focal": 0.8, "k1": 0, "k2": 0 } }, "shots": { "a.png": { "camera": "c", "rotation": [0, 0, 0],
+        "translation": [-1, -2, -3] } }, "points": {} }]]=],
+      ["opensfm/undistorted/openmvs/depth0000.dmap"] = "DR",
+    }
+    local method = aib.method.open(folder.path)
+    local batch = method.batches[1]
+    t:equal({ method.kind, batch.names, centre(batch, 1), batch.depth }, { "opensfm", { "a.png" }, { 1, 2, 3 }, nil })
+    t:contains(batch.warnings[1], "opensfm/undistorted/openmvs: depth maps of OpenMVS")
+  end,
+
+  ["MegaSaM: cam_c2w, depths and intrinsic in one file"] = function(t)
+    local pose = { 1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1 }
+    local folder <close> = folder_of { ["scene.npz"] = npz {
+      { "depths", "(1, 1, 2)", ("<ff"):pack(1.5, 2.5), "<f4" },
+      { "cam_c2w", "(1, 4, 4)", ("<" .. ("d"):rep(16)):pack(table.unpack(pose)), "<f8" },
+      { "intrinsic", "(3, 3)", ("<ddddddddd"):pack(3, 0, 1, 0, 3, 0.5, 0, 0, 1), "<f8" },
+    } }
+    local method = aib.method.open(folder.path, { names = { "a.png" } })
+    local batch = method.batches[1]
+    t:equal({ method.kind, centre(batch, 1), batch.depth(1):at(2, 1) }, { "megasam", { 5, 6, 7 }, 2.5 })
+    t:equal({ batch.cameras["a.png"].fx, batch.cameras["a.png"].width }, { 3, 2 })
   end,
 
   ["a method with one frame of reference is cut into batches by the scene's images"] = function(t)
