@@ -60,6 +60,14 @@ function files:file(name)
   return self:path(name)
 end
 
+--- Remembers that an image's file is not there, where that is so: it is seen when it comes.
+function files:miss(pattern, image)
+  local name = M.expand(pattern, image)
+  if aib.system.is_file(self:path(name)) then return end
+  self.used[pattern] = self.used[pattern] or {}
+  self.used[pattern][name] = { status = "none" }
+end
+
 --- One fingerprint for several files: the sum of their sizes, and the hash of the sorted lines "hash  name".
 local function combined(prints)
   local lines, bytes, count = {}, 0, 0

@@ -93,6 +93,13 @@ return aib.test {
     aib.system.write_text(depth .. names[1], aib.system.read_text(depth .. names[2]))
     local _, said = support.aib_lua(script, data, "--results", kept, fast[1], fast[2])
     t:equal(said, "20 of 21 parts are reused; made: crane / SGBM, true poses, images 1 to 32\n")
+    local added = depth .. names[1]:gsub("%d+", function(digits) return ("%06d"):format(tonumber(digits) + 1) end)
+    t:check(not aib.system.is_file(added), "a map that is new")
+    aib.system.write_text(added, aib.system.read_text(depth .. names[2]))
+    _, said = support.aib_lua(script, data, "--results", kept, fast[1], fast[2])
+    t:equal(said, "20 of 21 parts are reused; made: crane / SGBM, true poses, images 1 to 32\n")
+    os.remove(added)
+    json_of(t, script, out, data, "--results", kept)
     local after = json_of(t, script, out, data, "--results", kept)
     t:check(after ~= before and after == json_of(t, script, out, data), "the numbers follow the content")
   end,

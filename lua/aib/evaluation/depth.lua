@@ -4,10 +4,10 @@
 --- Depth maps of a method, for the protocol asset_inspection: rows of single images, which any machine can make, and
 --- the numbers that follow from all of them.
 ---
---- A source says where maps are and how they are scaled: { n_expected =, series =, maps = }. Each series is scored with
---- scales of its own: { method = name where it is not the unit's, how = options of what is of a length }. Each map is
---- { name =, place = number of its image, read = function(files), confidence = function()|nil, scales = { by series;
---- false where it is not known } }.
+--- A source says where maps are and how they are scaled: { n_expected =, pattern = of files | nil, series =, maps = }.
+--- Each series is scored with scales of its own: { method = name where it is not the unit's, how = options of what is of
+--- a length }. Each map is { name =, place = number of its image, read = function(files), confidence = function()|nil,
+--- scales = { by series; false where it is not known } }.
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
 local with = require "aib.evaluation.with"
@@ -40,7 +40,7 @@ function M.of_files(pattern, truth, files, scale, how)
     maps[#maps + 1] = { name = name, place = places[name], scales = { scale or false },
       read = function(own_files) return aib.io.read_depth(own_files:frame(pattern, name)) end }
   end
-  return { maps = maps, series = { { how = how } }, n_expected = #truth.depth_names }
+  return { maps = maps, series = { { how = how } }, pattern = pattern, n_expected = #truth.depth_names }
 end
 
 --- The source of the depth maps of batches (aib.batches.align), each at the scale of its alignment.
@@ -124,9 +124,17 @@ local function add_rows(lists, map, truth, input, files)
   end
 end
 
+--- Remembers the maps that a range lacks, so that those that come later are seen.
+local function miss_files(source, range, truth, files)
+  for place = range.first, range.last do
+    for _, pattern in ipairs { truth.spec.depth, source.pattern } do files:miss(pattern, truth.names[place]) end
+  end
+end
+
 --- The rows of a range of images, in the order of the scene: a list of { method =, how =, n_expected =, rows = }, one
 --- for each series.
 function M.rows(source, range, truth, input, files)
+  miss_files(source, range, truth, files)
   local lists, maps = aib.json.list(), {}
   for k, series in ipairs(source.series) do
     lists[k] = { method = series.method, how = series.how, n_expected = source.n_expected, rows = aib.json.list() }

@@ -46,6 +46,11 @@ function instance:whole_folder(name) end
 ---@return string
 function instance:frame(pattern, image) end
 
+---Remembers that an image's file is not there, where that is so.
+---@param pattern string
+---@param image string
+function instance:miss(pattern, image) end
+
 ---Those images for which the pattern names a file that is there; an io error where none is.
 ---@param pattern string
 ---@param images string[]
