@@ -12,3 +12,4 @@
 #include <aib/sample/unproject.hpp>
 #include <aib/sample/voxel.hpp>
 #include <aib/sample/voxel_grid.hpp>
+#include <aib/sample/voxel_lattice.hpp>

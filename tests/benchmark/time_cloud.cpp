@@ -55,7 +55,8 @@ int main(int argc, char** argv) {
   const stopwatch thinning;
   const std::size_t voxels =
       strays > 0 ? 0 : aib::sample::voxel(estimate, {.size = 0.05, .threads = threads}).size();
+  const double thinned = thinning.seconds();
   std::printf("aib %s total %.4f read %.4f voxel %.4f (%zu) index %.2f acc %.9f comp %.9f\n",
-              aib::instruction_set, compared, read, thinning.seconds(), voxels,
-              index_bytes_a_point(reference), accuracy, completeness);
+              aib::instruction_set, compared, read, thinned, voxels, index_bytes_a_point(reference),
+              accuracy, completeness);
 }

@@ -5,7 +5,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 using namespace aib;
@@ -49,6 +52,27 @@ TEST_CASE("the lattice of the world stays where it is when a stray point comes i
   const auto after = sample::voxel(c, {.size = 0.05});
   REQUIRE(after.size() == before.size() + 1);
   CHECK(std::equal(before.points.begin(), before.points.end(), after.points.begin() + 1));
+}
+
+TEST_CASE("voxels of a cloud too wide for one sort are those of plain grouping") {
+  random_engine random(2);
+  cloud::cloud c;
+  const auto place = [&] { return static_cast<float>(std::floor(random.uniform(-4, 4)) * 1e5); };
+  for (int i = 0; i < 4000; ++i) c.points.emplace_back(place(), place(), place());
+  c.points.emplace_back(0, std::numeric_limits<float>::infinity(), 0);
+  const double size = 1e-3;
+  std::map<std::array<double, 3>, Eigen::Vector3d> expected;  // z, y, x
+  for (std::size_t i = 0; i + 1 < c.size(); ++i) {
+    const Eigen::Vector3d p = c.position(i);
+    const auto cell = [&](double x) { return std::floor(x / size); };
+    expected[{cell(p.z()), cell(p.y()), cell(p.x())}] = p;
+  }
+  for (const unsigned threads : {1u, 3u}) {
+    const auto found = sample::voxel(c, {.size = size, .threads = threads});
+    REQUIRE(found.size() == expected.size());
+    std::size_t i = 0;
+    for (const auto& voxel : expected) CHECK(found.position(i++) == voxel.second);
+  }
 }
 
 TEST_CASE("voxels: map coordinates, threads, nothing, and what is refused") {

@@ -29,7 +29,8 @@ namespace aib::sample {
 /// left out. Lattice at the origin of the world.
 class voxel_grid {
  public:
-  /// Only size and threads of the options are used. Throws argument_error if size is not positive.
+  /// Only size, threads and control of the options are used. Throws argument_error if size is not
+  /// positive.
   explicit voxel_grid(const voxel_options& options);
 
   /// Points that are not finite are left out. The same for any number of threads. Throws
@@ -75,7 +76,7 @@ class voxel_grid {
 };
 
 inline voxel_grid::voxel_grid(const voxel_options& options)
-    : options_{.size = options.size, .threads = options.threads} {
+    : options_{.size = options.size, .threads = options.threads, .control = options.control} {
   if (!(options.size > 0 && std::isfinite(options.size)))
     throw argument_error(message("sample::voxel_grid: size > 0 expected, found ", options.size));
   if (options_.threads == 0) options_.threads = available_threads();
@@ -116,18 +117,15 @@ inline voxel_grid::sums voxel_grid::sum_of(const cloud::cloud& points,
 
 inline void voxel_grid::add(const cloud::cloud& points) {
   if (points.size() == 0) return;
-  const detail::voxel_lattice lattice(points, options_);
-  const auto sorted = detail::sort_by_cell(points, lattice, options_.threads);
-  const auto starts = detail::voxel_starts(sorted, lattice);
-  const std::size_t n = starts.size() - 1;
-  std::vector<sums> parts(n);
-  for_each_chunk(n, 4096, options_.threads, {}, [&](const chunk& c) {
-    for (std::size_t v = c.begin; v < c.end; ++v)
-      parts[v] = sum_of(points, sorted.span().subspan(starts[v], starts[v + 1] - starts[v]));
+  const detail::voxel_lattice lattice(points, options_.size, options_.anchor);
+  const detail::points_by_voxel voxels(points, lattice, options_.threads, options_.control);
+  std::vector<sums> parts(voxels.size());
+  for_each_chunk(voxels.size(), 4096, options_.threads, options_.control, [&](const chunk& c) {
+    for (std::size_t v = c.begin; v < c.end; ++v) parts[v] = sum_of(points, voxels[v]);
   });
-  for (std::size_t v = 0; v < n; ++v)
-    voxels_[cell_of(points.position(sorted[starts[v]]))] += parts[v];
-  n_points_ += sorted.size();
+  for (std::size_t v = 0; v < voxels.size(); ++v)
+    voxels_[cell_of(points.position(voxels[v].front()))] += parts[v];
+  n_points_ += voxels.n_points();
   has_colors_ = has_colors_ && !points.colors.empty();
 }
 
