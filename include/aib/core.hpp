@@ -9,7 +9,10 @@
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/core/isa.hpp>
+#include <aib/core/large_pages.hpp>
 #include <aib/core/message.hpp>
+#include <aib/core/prefetch.hpp>
 #include <aib/core/random.hpp>
 #include <aib/core/simd.hpp>
+#include <aib/core/simd_integers.hpp>
 #include <aib/core/simd_wide.hpp>

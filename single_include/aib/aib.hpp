@@ -2048,6 +2048,38 @@ inline constexpr const char* instruction_set = AIB_ISA_TEXT(AIB_ISA);
 
 }  // namespace aib
 
+// aib/core/large_pages.hpp
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace aib {
+
+inline constexpr std::size_t large_page = std::size_t{2} << 20;
+
+/// Asks the system to lay memory that nobody has touched yet in large pages: the first touch of
+/// millions of small ones, and the way to them in random order, would cost as much as the work.
+inline void advise_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t skipped = (large_page - address % large_page) % large_page;
+  if (bytes < skipped + large_page) return;
+  madvise(static_cast<char*>(memory) + skipped, (bytes - skipped) / large_page * large_page,
+          MADV_HUGEPAGE);
+#endif
+}
+
+/// `values.resize(n)` of an empty vector, in large pages where the system has them.
+template <class T>
+void resize_in_large_pages(std::vector<T>& values, std::size_t n) {
+  values.reserve(n);
+  advise_large_pages(values.data(), n * sizeof(T));
+  values.resize(n);
+}
+
+}  // namespace aib
+
 // aib/core/prefetch.hpp
 
 namespace aib {
@@ -2358,14 +2390,9 @@ inline double sum(f64x4 a) {
 
 // aib/search/buffer.hpp
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 namespace aib::search {
 
-/// An array whose elements begin undefined, in large pages where the system has them: the first
-/// touch of millions of small pages would cost as much as the search itself.
+/// An array whose elements begin undefined, in large pages where the system has them.
 template <class T>
 class buffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -2382,8 +2409,6 @@ class buffer {
   [[nodiscard]] std::span<const T> span() const { return {data(), size_}; }
 
  private:
-  static constexpr std::size_t large_page = std::size_t{2} << 20;
-
   static std::size_t alignment(std::size_t size) {
     return size * sizeof(T) >= 2 * large_page ? large_page : 64;
   }
@@ -2397,9 +2422,7 @@ class buffer {
     const std::size_t bytes = size * sizeof(T);
     const std::size_t align = alignment(size);
     void* memory = ::operator new (bytes, std::align_val_t{align});
-#if defined(__linux__)
-    if (align == large_page) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
+    advise_large_pages(memory, bytes);
     return {static_cast<T*>(memory), release{align}};
   }
 
@@ -2585,7 +2608,8 @@ inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
   z = z ^ y;
   u32x8 turned = u32x8::broadcast(0);
   for (int bit = bits - 1; bit > 0; --bit) {
-    turned = turned ^ (detail::spread_bit(z, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    turned =
+        turned ^ (detail::spread_bit(z, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
   }
   x = x ^ turned;
   y = y ^ turned;
@@ -3187,6 +3211,7 @@ class super_packet {
   void add_candidate(const box_node& node, std::size_t lane, std::uint32_t block);
   void pad_candidates();
   void visit_candidates(std::size_t packet_index, std::uint32_t start);
+  void near_candidates(std::size_t packet_index);
   void search_all_alone(std::uint32_t near_block);
 
   [[nodiscard]] float stray_threshold() const;
@@ -3209,6 +3234,7 @@ class super_packet {
   alignas(64) float low_[3][most_candidates + 16];
   alignas(64) float high_[3][most_candidates + 16];
   std::uint32_t block_[most_candidates + 16];
+  std::uint64_t near_[most_candidates / 64 + 1];  ///< a bit a candidate
 };
 
 /// The box of some lanes, each bound in all eight lanes.
@@ -3377,21 +3403,11 @@ inline bool super_packet::may_improve(const packet& q,
 }
 
 inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
-  const std::size_t first = p * packet::size;
-  const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
   packet q = load_packet(p);
-  const f32x8 worst =
-      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
-  for (std::size_t i = 0; i < candidates_; i += 8) {
-    f32x8 gap[3];
-    for (int k = 0; k < 3; ++k) {
-      const f32x8 before = f32x8::load(low_[k] + i) - box.high[k];
-      const f32x8 behind = box.low[k] - f32x8::load(high_[k] + i);
-      gap[k] = max(max(before, behind), f32x8::broadcast(0));
-    }
-    unsigned mask = less(squared_length(gap[0], gap[1], gap[2]), worst);
-    for (; mask != 0; mask &= mask - 1) {
-      const std::size_t c = i + static_cast<std::size_t>(std::countr_zero(mask));
+  near_candidates(p);
+  for (std::size_t word = 0; word * 64 < candidates_; ++word) {
+    for (std::uint64_t mask = near_[word]; mask != 0; mask &= mask - 1) {
+      const std::size_t c = word * 64 + static_cast<std::size_t>(std::countr_zero(mask));
       const bool seen = block_[c] + 1 >= start && block_[c] <= start + 1;
       if (!seen && may_improve(q, {low_[0][c], low_[1][c], low_[2][c]},
                                {high_[0][c], high_[1][c], high_[2][c]})) {
@@ -3400,6 +3416,25 @@ inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
     }
   }
   store_best(p, q);
+}
+
+/// Marks the candidates that are nearer to the box of a packet than the worst of its queries needs.
+inline void super_packet::near_candidates(std::size_t p) {
+  const std::size_t first = p * packet::size;
+  const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
+  const f32x8 worst =
+      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
+  std::fill_n(near_, (candidates_ + 63) / 64, 0);
+  for (std::size_t i = 0; i < candidates_; i += 8) {
+    f32x8 gap[3];
+    for (int k = 0; k < 3; ++k) {
+      const f32x8 before = f32x8::load(low_[k] + i) - box.high[k];
+      const f32x8 behind = box.low[k] - f32x8::load(high_[k] + i);
+      gap[k] = max(max(before, behind), f32x8::broadcast(0));
+    }
+    const std::uint64_t mask = less(squared_length(gap[0], gap[1], gap[2]), worst);
+    near_[i / 64] |= mask << (i % 64);
+  }
 }
 
 inline void super_packet::search_all_alone(std::uint32_t near_block) {
@@ -3464,7 +3499,8 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
                                           const box_tree& targets,
                                           const nearest_options& options) {
   constexpr std::size_t group = super_packet::packets;
-  std::vector<float> squared(queries.size());
+  std::vector<float> squared;
+  resize_in_large_pages(squared, queries.size());
   const std::size_t n_blocks = queries.blocks().size();
   for_each_chunk(n_blocks, 32 * group, options.threads, options.control, [&](const chunk& c) {
     const auto search = std::make_unique<super_packet>(targets, options.squared_bound);
@@ -11101,7 +11137,7 @@ class ply_vertices {
 
   cloud::cloud read(ply_data& data) {
     const auto n = static_cast<std::size_t>(element_.count);
-    is_float_ ? result_.points.resize(n) : doubles_.resize(n);
+    is_float_ ? resize_in_large_pages(result_.points, n) : doubles_.resize(n);
     if (normal_) result_.normals.resize(n);
     if (color_) result_.colors.resize(n);
     if (label_) result_.labels.resize(n);
@@ -23432,10 +23468,11 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 4096, options.threads, options.control,
+  for_each_chunk(surface.triangles.size(), 64, options.threads, options.control,
                  [&](const chunk& c) {
                    for (std::size_t t = c.begin; t < c.end; ++t) {
                      if (starts[t] == starts[t + 1]) continue;
+                     demand_go(options.control);  // a triangle may have a million
                      const auto corner = aib::mesh::corners(surface, t);
                      const Eigen::Vector3f normal = unit_normal(corner);
                      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
@@ -23968,7 +24005,8 @@ namespace aib::sample {
 /// left out. Lattice at the origin of the world.
 class voxel_grid {
  public:
-  /// Only size, threads and control of the options are used. Throws argument_error if size is not positive.
+  /// Only size, threads and control of the options are used. Throws argument_error if size is not
+  /// positive.
   explicit voxel_grid(const voxel_options& options);
 
   /// Points that are not finite are left out. The same for any number of threads. Throws

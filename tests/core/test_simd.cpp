@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/core/simd.hpp>
+#include <aib/core/simd_integers.hpp>
 #include <aib/core/simd_wide.hpp>
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 using namespace aib;
@@ -52,6 +54,25 @@ void check_lanes() {
 }
 
 }  // namespace
+
+TEST_CASE("integer lanes calculate as scalars do, modulo 2^32") {
+  const std::uint32_t a[8] = {0, 1, 2, 3, 0xffffffff, 0x80000000, 0x7fffffff, 0x12345678};
+  const std::uint32_t b[8] = {1, 1, 7, 0, 0xf0f0f0f0, 0x80000001, 3, 0x9abcdef0};
+  const auto expect = [&](u32x8 found, auto op) {
+    std::uint32_t out[8];
+    found.store(out);
+    for (std::size_t i = 0; i < 8; ++i) CHECK(out[i] == op(a[i], b[i]));
+  };
+  const u32x8 x = u32x8::load(a), y = u32x8::load(b);
+  using u32 = std::uint32_t;
+  expect(x & y, [](u32 p, u32 q) { return p & q; });
+  expect(x | y, [](u32 p, u32 q) { return p | q; });
+  expect(x ^ y, [](u32 p, u32 q) { return p ^ q; });
+  expect(x - y, [](u32 p, u32 q) { return p - q; });
+  expect(x << 5, [](u32 p, u32) { return p << 5; });
+  expect(x >> 31, [](u32 p, u32) { return p >> 31; });
+  expect(u32x8::broadcast(9), [](u32, u32) { return u32{9}; });
+}
 
 TEST_CASE("lanes calculate as scalars do, unordered lanes included") {
   check_lanes<f32x8, float>();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/cloud/cloud.hpp>
+#include <aib/core/large_pages.hpp>
 #include <aib/io/byte_stream.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
@@ -110,7 +111,7 @@ class ply_vertices {
 
   cloud::cloud read(ply_data& data) {
     const auto n = static_cast<std::size_t>(element_.count);
-    is_float_ ? result_.points.resize(n) : doubles_.resize(n);
+    is_float_ ? resize_in_large_pages(result_.points, n) : doubles_.resize(n);
     if (normal_) result_.normals.resize(n);
     if (color_) result_.colors.resize(n);
     if (label_) result_.labels.resize(n);

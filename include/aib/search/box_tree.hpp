@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/executor.hpp>
+#include <aib/core/prefetch.hpp>
 #include <aib/core/simd.hpp>
 #include <aib/search/buffer.hpp>
 #include <aib/search/curve.hpp>
@@ -83,8 +84,12 @@ inline buffer<std::uint64_t> sort_along(std::span<const Eigen::Vector3f> points,
                                         const control& control) {
   buffer<std::uint64_t> words(points.size());
   for_each_chunk(points.size(), 1 << 16, threads, control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      words[i] = order.key(points[i]) << order.index_bits | i;
+    for (std::size_t first = c.begin; first < c.end; first += 8) {
+      const std::size_t count = std::min<std::size_t>(8, c.end - first);
+      const auto keys = order.keys(points.subspan(first, count));
+      for (std::size_t i = 0; i < count; ++i) {
+        words[first + i] = keys[i] << order.index_bits | (first + i);
+      }
     }
   });
   radix_sort(words, {order.index_bits, order.index_bits + 3 * order.bits}, threads, control);
@@ -115,6 +120,9 @@ inline void box_tree::fill_blocks(std::span<const Eigen::Vector3f> points,
   for_each_chunk(blocks_.size(), 4096, threads, control, [&](const chunk& c) {
     for (std::size_t b = c.begin; b < c.end; ++b) {
       keys_[b] = sorted[b * size] >> order.index_bits;
+      for (std::size_t ahead = 4 * size; ahead < 5 * size && b * size + ahead < n; ++ahead) {
+        prefetch_read(&points[sorted[b * size + ahead] & index_mask]);
+      }
       for (std::size_t j = 0; j < size; ++j) {
         const std::size_t place = std::min(b * size + j, n - 1);
         const auto i = static_cast<std::uint32_t>(sorted[place] & index_mask);

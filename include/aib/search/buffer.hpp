@@ -2,20 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/core/large_pages.hpp>
+
 #include <cstddef>
 #include <memory>
 #include <new>
 #include <span>
 #include <type_traits>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 namespace aib::search {
 
-/// An array whose elements begin undefined, in large pages where the system has them: the first
-/// touch of millions of small pages would cost as much as the search itself.
+/// An array whose elements begin undefined, in large pages where the system has them.
 template <class T>
 class buffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -32,8 +29,6 @@ class buffer {
   [[nodiscard]] std::span<const T> span() const { return {data(), size_}; }
 
  private:
-  static constexpr std::size_t large_page = std::size_t{2} << 20;
-
   static std::size_t alignment(std::size_t size) {
     return size * sizeof(T) >= 2 * large_page ? large_page : 64;
   }
@@ -47,9 +42,7 @@ class buffer {
     const std::size_t bytes = size * sizeof(T);
     const std::size_t align = alignment(size);
     void* memory = ::operator new (bytes, std::align_val_t{align});
-#if defined(__linux__)
-    if (align == large_page) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
+    advise_large_pages(memory, bytes);
     return {static_cast<T*>(memory), release{align}};
   }
 

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/core/isa.hpp>
 #include <aib/search/hilbert.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,17 +16,23 @@
 #include <vector>
 
 namespace aib::search {
+inline namespace AIB_ISA {
 
 /// A Hilbert curve through a cube of space. Points outside take the key of the nearest cell, so
 /// that a few strays do not take the resolution from all others.
 struct curve {
   Eigen::Vector3f low = Eigen::Vector3f::Zero();
   float cells_per_unit = 1;
-  int bits = 14;        ///< per axis, even
+  int bits = 14;        ///< per axis
   int index_bits = 22;  ///< what is left of 64 bits for the index of a point
 
-  [[nodiscard]] std::uint64_t key(const Eigen::Vector3f& p) const {
-    return hilbert_key(cell(p, 0), cell(p, 1), cell(p, 2), bits);
+  /// Keys of 1 .. 8 points; what is behind them is undefined.
+  [[nodiscard]] std::array<std::uint64_t, 8> keys(std::span<const Eigen::Vector3f> points) const {
+    std::uint32_t cells[3][8] = {};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) cells[axis][i] = cell(points[i], axis);
+    }
+    return hilbert_keys(u32x8::load(cells[0]), u32x8::load(cells[1]), u32x8::load(cells[2]), bits);
   }
 
  private:
@@ -70,7 +78,7 @@ inline interval bulk_of(std::vector<float>& values) {
   const std::size_t most = std::max<std::size_t>({a.size(), b.size(), 2});
   curve c;
   c.index_bits = static_cast<int>(std::bit_width(most - 1));
-  c.bits = std::min(14, (64 - c.index_bits) / 3) & ~1;
+  c.bits = std::min(14, (64 - c.index_bits) / 3);
   float extent = 0;
   std::vector<float> values;
   for (int axis = 0; axis < 3; ++axis) {
@@ -85,4 +93,5 @@ inline interval bulk_of(std::vector<float>& values) {
   return c;
 }
 
+}  // namespace AIB_ISA
 }  // namespace aib::search

@@ -4,6 +4,8 @@
 
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
+#include <aib/core/large_pages.hpp>
+#include <aib/core/prefetch.hpp>
 #include <aib/search/box_tree.hpp>
 #include <aib/search/nearest_one.hpp>
 #include <aib/search/nearest_packet.hpp>
@@ -68,7 +70,8 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
                                           const box_tree& targets,
                                           const nearest_options& options) {
   constexpr std::size_t group = super_packet::packets;
-  std::vector<float> squared(queries.size());
+  std::vector<float> squared;
+  resize_in_large_pages(squared, queries.size());
   const std::size_t n_blocks = queries.blocks().size();
   for_each_chunk(n_blocks, 32 * group, options.threads, options.control, [&](const chunk& c) {
     const auto search = std::make_unique<super_packet>(targets, options.squared_bound);
@@ -77,10 +80,12 @@ inline std::vector<float> nearest_squared(const box_tree& queries,
       const std::size_t count = std::min(group, c.end - first);
       std::uint32_t start[group] = {};
       for (std::size_t b = 0; b < count; ++b) start[b] = merge.start_of(first + b);
+      const std::size_t place = first * point_block::size;
+      const auto index = queries.index().subspan(
+          place, std::min(count * point_block::size, queries.size() - place));
+      for (const std::uint32_t i : index) prefetch_write(&squared[i]);
       const auto found = search->search(queries.blocks().subspan(first, count), start);
-      const auto index = queries.index().subspan(first * point_block::size);
-      const std::size_t used = std::min(found.size(), index.size());
-      for (std::size_t i = 0; i < used; ++i) squared[index[i]] = found[i];
+      for (std::size_t i = 0; i < index.size(); ++i) squared[index[i]] = found[i];
     }
   });
   return squared;

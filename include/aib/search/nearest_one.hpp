@@ -93,11 +93,10 @@ inline float nearest_one(const box_tree& tree,
                          std::uint32_t& near_block) {
   const auto visit = [&](std::uint32_t b) {
     const point_block& block = tree.blocks()[b];
-    const float least = lowest(min(squared_distances(q, block, 0), squared_distances(q, block, 8)));
-    if (least < bound) {
-      bound = least;
-      near_block = b;
-    }
+    const f32x8 least = min(squared_distances(q, block, 0), squared_distances(q, block, 8));
+    if (less(least, f32x8::broadcast(bound)) == 0) return;
+    bound = lowest(least);
+    near_block = b;
   };
   visit(near_block);
   pending_boxes pending;

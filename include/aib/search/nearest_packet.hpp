@@ -63,6 +63,7 @@ class super_packet {
   void add_candidate(const box_node& node, std::size_t lane, std::uint32_t block);
   void pad_candidates();
   void visit_candidates(std::size_t packet_index, std::uint32_t start);
+  void near_candidates(std::size_t packet_index);
   void search_all_alone(std::uint32_t near_block);
 
   [[nodiscard]] float stray_threshold() const;
@@ -85,6 +86,7 @@ class super_packet {
   alignas(64) float low_[3][most_candidates + 16];
   alignas(64) float high_[3][most_candidates + 16];
   std::uint32_t block_[most_candidates + 16];
+  std::uint64_t near_[most_candidates / 64 + 1];  ///< a bit a candidate
 };
 
 /// The box of some lanes, each bound in all eight lanes.
@@ -253,21 +255,11 @@ inline bool super_packet::may_improve(const packet& q,
 }
 
 inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
-  const std::size_t first = p * packet::size;
-  const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
   packet q = load_packet(p);
-  const f32x8 worst =
-      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
-  for (std::size_t i = 0; i < candidates_; i += 8) {
-    f32x8 gap[3];
-    for (int k = 0; k < 3; ++k) {
-      const f32x8 before = f32x8::load(low_[k] + i) - box.high[k];
-      const f32x8 behind = box.low[k] - f32x8::load(high_[k] + i);
-      gap[k] = max(max(before, behind), f32x8::broadcast(0));
-    }
-    unsigned mask = less(squared_length(gap[0], gap[1], gap[2]), worst);
-    for (; mask != 0; mask &= mask - 1) {
-      const std::size_t c = i + static_cast<std::size_t>(std::countr_zero(mask));
+  near_candidates(p);
+  for (std::size_t word = 0; word * 64 < candidates_; ++word) {
+    for (std::uint64_t mask = near_[word]; mask != 0; mask &= mask - 1) {
+      const std::size_t c = word * 64 + static_cast<std::size_t>(std::countr_zero(mask));
       const bool seen = block_[c] + 1 >= start && block_[c] <= start + 1;
       if (!seen && may_improve(q, {low_[0][c], low_[1][c], low_[2][c]},
                                {high_[0][c], high_[1][c], high_[2][c]})) {
@@ -276,6 +268,25 @@ inline void super_packet::visit_candidates(std::size_t p, std::uint32_t start) {
     }
   }
   store_best(p, q);
+}
+
+/// Marks the candidates that are nearer to the box of a packet than the worst of its queries needs.
+inline void super_packet::near_candidates(std::size_t p) {
+  const std::size_t first = p * packet::size;
+  const lane_box box = box_of(axis_[0] + first, axis_[1] + first, axis_[2] + first, packet::size);
+  const f32x8 worst =
+      f32x8::broadcast(*std::max_element(best_ + first, best_ + first + packet::size));
+  std::fill_n(near_, (candidates_ + 63) / 64, 0);
+  for (std::size_t i = 0; i < candidates_; i += 8) {
+    f32x8 gap[3];
+    for (int k = 0; k < 3; ++k) {
+      const f32x8 before = f32x8::load(low_[k] + i) - box.high[k];
+      const f32x8 behind = box.low[k] - f32x8::load(high_[k] + i);
+      gap[k] = max(max(before, behind), f32x8::broadcast(0));
+    }
+    const std::uint64_t mask = less(squared_length(gap[0], gap[1], gap[2]), worst);
+    near_[i / 64] |= mask << (i % 64);
+  }
 }
 
 inline void super_packet::search_all_alone(std::uint32_t near_block) {

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: the aib authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <aib/core/isa.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#if !defined(AIB_PLAIN) && defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace aib {
+
+inline namespace AIB_ISA {
+
+/// Eight unsigned integers that are calculated together, modulo 2^32. `load` and `store` need no
+/// alignment; shifts are by less than 32.
+#if !defined(AIB_PLAIN) && defined(__AVX2__)
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  __m256i v;
+
+  static u32x8 load(const std::uint32_t* p) {
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
+  }
+  static u32x8 broadcast(std::uint32_t x) { return {_mm256_set1_epi32(static_cast<int>(x))}; }
+  void store(std::uint32_t* p) const { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), v); }
+
+  friend u32x8 operator&(u32x8 a, u32x8 b) { return {_mm256_and_si256(a.v, b.v)}; }
+  friend u32x8 operator|(u32x8 a, u32x8 b) { return {_mm256_or_si256(a.v, b.v)}; }
+  friend u32x8 operator^(u32x8 a, u32x8 b) { return {_mm256_xor_si256(a.v, b.v)}; }
+  friend u32x8 operator-(u32x8 a, u32x8 b) { return {_mm256_sub_epi32(a.v, b.v)}; }
+  friend u32x8 operator<<(u32x8 a, int bits) { return {_mm256_slli_epi32(a.v, bits)}; }
+  friend u32x8 operator>>(u32x8 a, int bits) { return {_mm256_srli_epi32(a.v, bits)}; }
+};
+
+#elif !defined(AIB_PLAIN) && defined(__SSE2__)
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  __m128i lo, hi;
+
+  static u32x8 load(const std::uint32_t* p) {
+    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)),
+            _mm_loadu_si128(reinterpret_cast<const __m128i*>(p + 4))};
+  }
+  static u32x8 broadcast(std::uint32_t x) {
+    const __m128i all = _mm_set1_epi32(static_cast<int>(x));
+    return {all, all};
+  }
+  void store(std::uint32_t* p) const {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), lo);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 4), hi);
+  }
+
+  friend u32x8 operator&(u32x8 a, u32x8 b) {
+    return {_mm_and_si128(a.lo, b.lo), _mm_and_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator|(u32x8 a, u32x8 b) {
+    return {_mm_or_si128(a.lo, b.lo), _mm_or_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator^(u32x8 a, u32x8 b) {
+    return {_mm_xor_si128(a.lo, b.lo), _mm_xor_si128(a.hi, b.hi)};
+  }
+  friend u32x8 operator-(u32x8 a, u32x8 b) {
+    return {_mm_sub_epi32(a.lo, b.lo), _mm_sub_epi32(a.hi, b.hi)};
+  }
+  friend u32x8 operator<<(u32x8 a, int bits) {
+    return {_mm_slli_epi32(a.lo, bits), _mm_slli_epi32(a.hi, bits)};
+  }
+  friend u32x8 operator>>(u32x8 a, int bits) {
+    return {_mm_srli_epi32(a.lo, bits), _mm_srli_epi32(a.hi, bits)};
+  }
+};
+
+#else
+
+struct u32x8 {
+  static constexpr std::size_t width = 8;
+  std::uint32_t v[width];
+
+  static u32x8 load(const std::uint32_t* p) {
+    u32x8 out;
+    std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static u32x8 broadcast(std::uint32_t x) {
+    return each([x](std::size_t) { return x; });
+  }
+  void store(std::uint32_t* p) const { std::memcpy(p, v, sizeof v); }
+
+  template <class Lane>
+  static u32x8 each(Lane lane) {
+    u32x8 out;
+    for (std::size_t i = 0; i < width; ++i) out.v[i] = lane(i);
+    return out;
+  }
+  friend u32x8 operator&(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] & b.v[i]; });
+  }
+  friend u32x8 operator|(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] | b.v[i]; });
+  }
+  friend u32x8 operator^(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] ^ b.v[i]; });
+  }
+  friend u32x8 operator-(const u32x8& a, const u32x8& b) {
+    return each([&](std::size_t i) { return a.v[i] - b.v[i]; });
+  }
+  friend u32x8 operator<<(const u32x8& a, int bits) {
+    return each([&](std::size_t i) { return a.v[i] << bits; });
+  }
+  friend u32x8 operator>>(const u32x8& a, int bits) {
+    return each([&](std::size_t i) { return a.v[i] >> bits; });
+  }
+};
+
+#endif
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
