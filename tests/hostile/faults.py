@@ -121,14 +121,14 @@ class Faults(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
                 path, done = self.write(name, writer, limit(resource.RLIMIT_FSIZE, 2000))
-                self.refused(done, 3, "cannot write: File too large")
+                self.refused(done, 1, "cannot write: File too large")
                 after = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
                 self.assertEqual(after.keys(), before.keys())
                 self.assertEqual(after, before)
 
     def test_a_full_disk_is_told(self):
         done = shell("aib.system.write_text(arg[1], 'abc')", "/dev/full")
-        self.refused(done, 3, "/dev/full: cannot write: No space left on device")
+        self.refused(done, 1, "/dev/full: cannot write: No space left on device")
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run([AIB_LUA, "-e", "print(1)"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
         self.refused(done, 1, "standard output: cannot write: No space left on device")
@@ -149,10 +149,10 @@ class Faults(unittest.TestCase):
         os.chmod(path, 0o444)
         os.chmod(self.folder, 0o777)
         done = shell_as_nobody("aib.system.write_text(arg[1], 'new')", path)
-        self.refused(done, 3, "a.txt: cannot write: Permission denied")
+        self.refused(done, 1, "a.txt: cannot write: Permission denied")
         os.chmod(self.folder, 0o755 if os.geteuid() == 0 else 0o555)
         done = shell_as_nobody("aib.system.write_text(arg[1], 'new')", self.folder / "b.txt")
-        self.refused(done, 3, "b.txt: cannot create: Permission denied")
+        self.refused(done, 1, "b.txt: cannot create: Permission denied")
         self.assertEqual((path.read_text(), self.names()), ("old", ["a.txt"]))
 
     def test_behind_a_link_the_target_is_replaced(self):
@@ -274,45 +274,90 @@ class Faults(unittest.TestCase):
 
     # Interrupts ------------------------------------------------------------------------------------
 
+    # What calls work on, as globals.
+    LARGE = """
+        local function random_points(n)
+          local points = {}
+          for i = 1, n do points[i] = { math.random(), math.random(), math.random() } end
+          return points
+        end
+        local function poses(n)
+          local list = {}
+          for i, p in ipairs(random_points(n)) do list[i] = aib.math.pose { centre = p } end
+          return aib.pose.trajectory(list)
+        end
+        local rows, numbers, frames = {}, {}, {}
+        for y = 1, 300 do rows[y] = {} for x = 1, 400 do rows[y][x] = 1 + math.random() end end
+        for i = 1, 20000 do numbers[i] = math.random() end
+        local map = aib.depth.map(rows)
+        aib.io.write_depth(arg[1] .. '/d.exr', map)
+        for i, _ in ipairs(numbers) do
+          frames[i] = { name = '' .. i, estimate = arg[1] .. '/d.exr', reference = arg[1] .. '/d.exr' }
+        end
+        local mesh, middle_map = aib.io.read_mesh(arg[2]), aib.depth.downsample(map, 2000, 1500)
+        for name, value in pairs {
+          poses = poses(30000), numbers = numbers, map = map, frames = frames, mesh = mesh,
+          small = aib.cloud.from_points(random_points(20000)),
+          large = aib.sample.mesh(mesh, { n = 1000000 }), other = aib.sample.mesh(mesh, { n = 1000000, seed = 2 }),
+          large_map = aib.depth.downsample(map, 4000, 3000), picture = aib.depth.error_image(middle_map, middle_map),
+          camera = aib.math.camera { model = 'OPENCV', width = 400, height = 300,
+            parameters = { 400, 400, 200, 150, 0.1, 0.01, 0.001, 0.001 } },
+        } do rawset(_G, name, value) end
+    """
+
+    # Calls of the library that take seconds on one thread.
     LONG = {
-        "auc": "aib.pose.auc(poses(30000), poses(30000))",
-        "compare": "aib.cloud.compare(cloud(300000, 1), cloud(300000, 1e-3))",
-        "icp": "aib.align.icp(cloud(100000, 1), cloud(100000, 1), { max_distance = 1, relative_change = 0 })",
-        "bootstrap": "aib.stats.bootstrap(numbers(20000), { resamples = 100000 })",
-        "voxels": "for _ = 1, 1e9 do aib.sample.voxel(c, { size = 0.01 }) end",
-        "normals": "aib.cloud.with_normals(cloud(300000, 1), { neighbours = 100 })",
+        "auc": "aib.pose.auc(poses, poses)",
+        "bootstrap": "aib.stats.bootstrap(numbers, { resamples = 1000000 })",
+        "compare": "aib.cloud.compare(large, other)",
         "frames": "aib.depth.evaluate(frames)",
-        "files": "while true do aib.io.write_depth(arg[1] .. '/a.exr', d) aib.io.read_depth(arg[1] .. '/a.exr') end",
+        "icp": "aib.align.icp(large, other, { max_distance = 1, relative_change = 0 })",
+        "noise": "aib.survey.sensor_noise(picture)",
+        "normal consistency": "aib.cloud.normal_consistency(large, other)",
+        "normals": "aib.cloud.with_normals(large, { neighbours = 200 })",
+        "offsets": "aib.cloud.offsets(large, other)",
+        "poisson": "aib.sample.mesh(mesh, { n = 1000000, method = 'poisson' })",
+        "radius outliers": "aib.cloud.without_radius_outliers(large, { radius = 1 })",
+        "statistical outliers": "aib.cloud.without_statistical_outliers(large, { neighbours = 200 })",
+        "thin": "aib.sample.thin(large, { spacing = 1e-6 })",
+        "unproject": "aib.sample.unproject(large_map, camera, aib.math.pose {})",
+    }
+
+    def test_an_interrupt_ends_a_long_call_and_the_session_goes_on(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
+            script.write("local aib = require 'aib'\n" + self.LARGE)
+            script.flush()
+            words = [AIB_LUA, "--threads", "1", "-i", script.name, self.folder, ROOT / "examples/data/gt/crane/mesh.ply"]
+            with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as lua:
+                for name, call in self.LONG.items():
+                    with self.subTest(name):
+                        lua.stdin.write(f"print('going') io.stdout:flush() {call} print('it came to its end')\n")
+                        lua.stdin.flush()
+                        self.assertTrue(lua.stdout.readline().endswith("going\n"), lua.poll())
+                        time.sleep(0.1)
+                        lua.send_signal(signal.SIGINT)
+                        lua.stdin.write("print('here') io.stdout:flush()\n")
+                        lua.stdin.flush()
+                        self.assertTrue(lua.stdout.readline().endswith("> here\n"), lua.poll())
+                        injected[self._testMethodName] += 1
+                lua.communicate(timeout=PATIENCE_S)
+            self.assertEqual(lua.returncode, 0)
+
+    # These run until they are interrupted.
+    ENDLESS = {
+        "voxels": "while true do aib.sample.voxel(small, { size = 0.01 }) end",
+        "files": "while true do aib.io.write_depth(arg[1] .. '/a.exr', map) aib.io.read_depth(arg[1] .. '/a.exr') end",
         "protocol": "aib.protocol { name = 'p', inputs = {}, run = function() while true do pcall(error) end end }:main {}",
     }
 
-    def test_an_interrupt_ends_every_long_call(self):
-        things = """
-            local function cloud(n, size)
-              local points = {}
-              for i = 1, n do points[i] = { size * math.random(), size * math.random(), size * math.random() } end
-              return aib.cloud.from_points(points)
-            end
-            local function poses(n)
-              local list = {}
-              for i = 1, n do list[i] = aib.math.pose { centre = { math.random(), math.random(), math.random() } } end
-              return aib.pose.trajectory(list)
-            end
-            local function numbers(n) local t = {} for i = 1, n do t[i] = math.random() end return t end
-            local c, d, frames = cloud(20000, 1), nil, {}
-            local rows = {}
-            for y = 1, 300 do rows[y] = {} for x = 1, 400 do rows[y][x] = 1 + math.random() end end
-            d = aib.depth.map(rows)
-            aib.io.write_depth(arg[1] .. '/d.exr', d)
-            for i = 1, 20000 do frames[i] = { name = '' .. i, estimate = arg[1] .. '/d.exr', reference = arg[1] .. '/d.exr' } end
-            print('going') io.stdout:flush()
-        """
-        for name, call in self.LONG.items():
+    def test_an_interrupt_ends_a_script(self):
+        for name, code in {**self.ENDLESS, "frames": self.LONG["frames"]}.items():
             with self.subTest(name), tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
-                script.write("local aib = require 'aib'\n" + things + call + "\nprint('done')")
+                script.write("local aib = require 'aib'\n" + self.LARGE + "print('going') io.stdout:flush()\n" + code
+                             + "\nprint('it came to its end')")
                 script.flush()
-                with subprocess.Popen([AIB_LUA, script.name, self.folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                      text=True) as process:
+                with subprocess.Popen([AIB_LUA, script.name, self.folder, ROOT / "examples/data/gt/crane/mesh.ply"],
+                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
                     self.assertEqual(process.stdout.readline(), "going\n")
                     time.sleep(0.1)
                     process.send_signal(signal.SIGINT)

@@ -16,11 +16,13 @@
 #include <aib/core/random.hpp>
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/errors.hpp>
+#include <aib/io/ply_write.hpp>
 #include <aib/mesh/offsets.hpp>
 #include <aib/pose/ape.hpp>
 #include <aib/pose/auc.hpp>
 #include <aib/sample/mesh.hpp>
 #include <aib/sample/voxel.hpp>
+#include <aib/stream/compare_clouds.hpp>
 #endif
 
 #include <algorithm>
@@ -28,7 +30,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <string>
 #include <string_view>
+#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -79,6 +84,22 @@ void print_clouds(random_engine& random) {
   print("accuracy_rmse", c.accuracy_rmse);
   print("hausdorff", c.hausdorff);
   print("f_score", c.scores[1].f_score);
+}
+
+/// Clouds in files, more than the search may hold at once.
+void print_stream(random_engine& random) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("aib-bits-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  io::write_ply(folder / "estimate.ply", random_cloud(random, 150011));
+  io::write_ply(folder / "truth.ply", random_cloud(random, 15013));
+  const cloud::comparison c =
+      stream::compare_clouds(folder / "estimate.ply", folder / "truth.ply",
+                             {.memory = 16 << 20, .compare = {.tau = {0.03}, .threads = threads}});
+  std::filesystem::remove_all(folder);
+  print("stream", c.f1_distance);
+  print("stream", c.hausdorff);
+  print("stream", c.scores[0].f_score);
 }
 
 void print_points(const char* name, const cloud::cloud& c) {
@@ -155,4 +176,5 @@ int main(int count, char** arguments) {
   print_depth(random);
   print_frames(random);
   print_poses(random);
+  print_stream(random);
 }

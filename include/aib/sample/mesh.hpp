@@ -151,10 +151,11 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 4096, options.threads, options.control,
+  for_each_chunk(surface.triangles.size(), 64, options.threads, options.control,
                  [&](const chunk& c) {
                    for (std::size_t t = c.begin; t < c.end; ++t) {
                      if (starts[t] == starts[t + 1]) continue;
+                     demand_go(options.control);  // a triangle may have a million
                      const auto corner = aib::mesh::corners(surface, t);
                      const Eigen::Vector3f normal = unit_normal(corner);
                      for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
