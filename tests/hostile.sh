@@ -2,24 +2,55 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
 #
-# Every file of the zoo through the whole shell under AddressSanitizer and UndefinedBehaviorSanitizer,
-# with a table of what became of each; then made-up calls of every bound function. Builds a folder of
-# its own, build-hostile/.
+# All that is done to aib with files and scripts of strangers, with the figures of it:
+#
+#   tests/hostile.sh [MINUTES]     MINUTES of fuzzing, 1 without; tests/fuzz.sh keeps the totals
+#
+# The collection of good and malformed files (the zoo) through the whole shell under AddressSanitizer
+# and UndefinedBehaviorSanitizer and through the plain one within 1 GiB; made-up calls of every bound
+# function under the sanitizers; injected faults; numbers of threads, locales, instruction sets;
+# made-up files. Builds build/ and build-hostile/, which takes a quarter of an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-examples/setup.sh tests --only-packages
-[ -f build-hostile/build.ninja ] || meson setup build-hostile -Dtests=enabled -Dlua=enabled \
-  -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
+examples/setup.sh tests
+ninja -C build lua/aib-lua tests/io/test_io tests/stats/test_stats
+# Clang takes half the time, where its runtime library is here.
+compiler=g++
+[ -z "$(find /usr/lib/llvm-*/lib/clang -name 'libclang_rt.asan-x86_64.a' 2>/dev/null)" ] || compiler=clang++
+[ -f build-hostile/build.ninja ] || CXX=$compiler meson setup build-hostile -Dtests=enabled \
+  -Dlua=enabled -Doptimization=1 -Ddebug=false -Db_sanitize=address,undefined -Db_lundef=false \
   -Dcpp_args="-fno-sanitize-recover=undefined -D_GLIBCXX_ASSERTIONS" >/dev/null
 ninja -C build-hostile lua/aib-lua tests/io/test_io
 
-build-hostile/tests/io/test_io
-python3 tests/hostile/zoo.py ../shared build-hostile/lua/aib-lua --sanitized
+failed=0
+part() {
+  printf '\n== %s\n' "$1"
+  "${@:2}" || failed=$((failed + 1))
+}
 
-shell=$PWD/build-hostile/lua/aib-lua script=$PWD/tests/fuzz/fuzz_calls.lua
-away=$(mktemp -d)
-trap 'rm -rf "$away"' EXIT
-cd "$away"
-ASAN_OPTIONS=detect_leaks=0:max_allocation_size_mb=1100:allocator_may_return_null=1:hard_rss_limit_mb=3000 \
-  "$shell" "$script" 20000 1
+# Made-up calls, in an empty folder: they write files.
+calls() (
+  shell=$PWD/build-hostile/lua/aib-lua script=$PWD/tests/fuzz/fuzz_calls.lua
+  away=$(mktemp -d)
+  trap 'rm -rf "$away"' EXIT
+  cd "$away"
+  ASAN_OPTIONS=detect_leaks=0:max_allocation_size_mb=1100:allocator_may_return_null=1:hard_rss_limit_mb=3000 \
+    "$shell" "$script" 20000 1
+)
+
+plain=build/lua/aib-lua
+part "readers and values of the zoo, under the sanitizers" build-hostile/tests/io/test_io
+part "the zoo through the shell, under the sanitizers" \
+  python3 tests/hostile/zoo.py ../shared build-hostile/lua/aib-lua --sanitized
+part "made-up calls, under the sanitizers" calls
+part "the zoo within 1 GiB" python3 tests/hostile/zoo.py ../shared $plain
+part "faults" python3 tests/hostile/faults.py . $plain
+part "scripts that try to get out" $plain tests/lua/test_sandbox.lua
+part "threads and locales" python3 tests/hostile/variants.py $plain build/tests/io/test_io build/tests/stats/test_stats
+part "instruction sets, compilers, ThreadSanitizer" python3 tests/instruction_sets/compare_bits.py .
+part "made-up files" tests/fuzz.sh "${1:-1}"
+part "made-up files, all runs" tests/fuzz.sh --totals
+
+printf '\n%d of 10 parts failed\n' "$failed"
+[ "$failed" = 0 ]
