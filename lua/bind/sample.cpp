@@ -50,6 +50,7 @@ sample::voxel_options voxel_options(options& o, const session& s) {
                      {"centre", voxel_pick::centre},
                      {"nearest", voxel_pick::nearest}});
   v.threads = s.threads;
+  v.control = s.control;
   return v;
 }
 
