@@ -92,13 +92,13 @@ end
 
 --- Distances and what is near enough along the flight.
 local function draw(report, frames, input)
-  drawings.series(report, "Median distance along the flight", { label = "distance", unit = "mm" }, frames,
-    "distance_median")
-  drawings.series(report, "95 % of the distances along the flight", { label = "distance", unit = "mm" }, frames,
-    "distance_p95")
+  for _, part in ipairs { { "median", "median" }, { "p95", "95 %" } } do
+    drawings.series(report, "Distance along the flight", { label = "distance", unit = "mm" }, frames,
+      "distance_" .. part[1], part[2])
+  end
   for _, tau in ipairs(input.tau) do
-    drawings.series(report, ("Within %g GSD along the flight"):format(tau),
-      { label = "share of the truth", low = 0, high = 1 }, frames, ("within_total_%g_gsd"):format(tau))
+    drawings.series(report, "Near enough along the flight", { label = "share of the truth", low = 0, high = 1 }, frames,
+      ("within_total_%g_gsd"):format(tau), ("within %g GSD"):format(tau))
   end
 end
 

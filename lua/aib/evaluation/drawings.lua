@@ -114,14 +114,14 @@ function M.frame(cell, chosen, name, est, ref, transform)
   cell:attempt(function() cell:frame { name = name, estimate = est, reference = ref, transform = transform } end)
 end
 
---- A field of frames along the flight, of those that have it.
-function M.series(cell, title, y, frames, field)
+--- A field of frames along the flight, of those that have it; `label` where others are in the same figure.
+function M.series(cell, title, y, frames, field, label)
   if not cell:draws() then return end
   local names, values = {}, {}
   for _, frame in ipairs(frames) do
     if frame[field] then names[#names + 1], values[#values + 1] = frame.name, frame[field] end
   end
-  if #names > 0 then cell:timeline { title = title, y = y, frames = names, values = values } end
+  if #names > 0 then cell:timeline { title = title, label = label, y = y, frames = names, values = values } end
 end
 
 --- Errors and coverage of depth along the flight.

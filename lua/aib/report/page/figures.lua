@@ -46,11 +46,14 @@ local function numbers_of(figure)
   return heads, rows, stride
 end
 
---- As wide as its place in a large window, so that letters have the size of the page's.
-local sizes <const> = { timeline = { 1180, 250 }, curve = { 400, 260 }, interval = { 640 } }
+--- Between its place in a large window and on paper, so that letters have about the size of the page's.
+local sizes <const> = { timeline = { 900, 220 }, curve = { 400, 260 }, interval = { 640 } }
+
+local size_of_map <const> = { 400, 340 }
 
 local function drawing(figure)
-  local chart = setmetatable({ width = sizes[figure.kind][1], height = sizes[figure.kind][2] }, { __index = figure })
+  local size = figure.equal and size_of_map or sizes[figure.kind]
+  local chart = setmetatable({ width = size[1], height = size[2] }, { __index = figure })
   return figure.kind == "interval" and svg.intervals(chart) or svg.lines(chart)
 end
 
