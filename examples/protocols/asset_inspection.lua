@@ -164,7 +164,11 @@ local function finish(input, report, parts, files)
   end
   add_tables(report, input)
   state_conventions(report, input)
-  if not report.store.shard then add_sensitivity(report, series, input.rule) end
+  if report.store.shard then
+    report:note("", "a part of a run: depth, and changes over conditions, follow from all parts (aib-lua merge)")
+  else
+    add_sensitivity(report, series, input.rule)
+  end
   if input.per_frame then report.store.frames = frame_lists(series) end
   for label, print in pairs(files:sources()) do report:source(label, print) end
   aib.consistency.check_report(report)

@@ -143,6 +143,7 @@ return aib.test {
       shards[i] = ("%s/%d.json"):format(scratch.path, i)
       json_of(t, script, shards[i], data, "--per-frame", "--shard", i .. "/4")
     end
+    t:contains(aib.system.read_text(shards[3]), "a part of a run: depth")
     t:contains(aib.system.read_text(shards[3]), '"name": "crane / COLMAP + SGBM, images 33 to 64"')
     t:check(json_of(t, merge, out, shards[3], shards[1], shards[4], shards[2]) == whole, "the bytes are the same")
     for _, n in ipairs { 2, 3, 16 } do
