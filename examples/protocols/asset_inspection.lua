@@ -80,9 +80,12 @@ local function add_changes(cell, levels, rule)
     end
     if #list > 1 then
       local contrast = ("%s to %s"):format(list[1].condition, list[#list].condition)
-      told[contrast] = told[contrast] or {}
-      table.insert(told[contrast], aib.sensitivity.add(cell:within { contrast = contrast }, metric[1], list,
-        { rule = metric[2]:find "^depth" and rule or nil }, metric.unit))
+      local sentence = aib.sensitivity.add(cell:within { contrast = contrast }, metric[1], list,
+        { rule = metric[2]:find "^depth" and rule or nil }, metric.unit)
+      if sentence then
+        told[contrast] = told[contrast] or {}
+        table.insert(told[contrast], sentence)
+      end
     end
   end
   for _, contrast in ipairs(suggest.keys(told)) do
