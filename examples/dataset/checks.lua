@@ -4,7 +4,7 @@
 --- What a scene of solids must hold: every solid is closed and faces outwards, no two triangles of a plane overlap.
 local vector = require "vector"
 
-local sub, cross, dot = vector.sub, vector.cross, vector.dot
+local cross, dot = vector.cross, vector.dot
 
 local M = {}
 

@@ -17,16 +17,25 @@ local function usage()
   os.exit(2)
 end
 
+--- Shares by number, as JSON has them: by text.
+local function by_text(shares)
+  local list = {}
+  for number, share in pairs(shares) do list[tostring(number)] = share end
+  return list
+end
+
 --- What the flight sees of the asset; behind it the ground goes on.
 local function measured(plan, mesh, labels)
   local report = aib.survey.measure(plan.trajectory, plan.camera, mesh, { labels = labels })
-  return { overlap = report.overlap, gsd_mm = report.gsd_mm, hit_share = report.hit_share }
+  return { overlap = report.overlap, gsd_mm = report.gsd_mm, hit_share = report.hit_share,
+    off_normal = report.off_normal, coverage = by_text(report.coverage), incidence = by_text(report.incidence),
+    area = report.area, unseen_area = report.unseen_area }
 end
 
 local function planned(plan)
   local kept = {}
   for _, name in ipairs { "n_frames", "step", "overlap", "overlap_across", "length", "duration", "gsd_mm", "n_pushed",
-    "largest_push", "min_distance", "n_gimbal_limited" } do kept[name] = plan[name] end
+    "largest_push", "min_distance", "n_gimbal_limited", "gimbal_delay" } do kept[name] = plan[name] end
   return kept
 end
 

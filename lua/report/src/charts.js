@@ -84,7 +84,7 @@ class Chart {
     this.place.append(this.box);
     element.classList.add("is-live");
     if (figure.frames && figure.lines.some((line) => hasFrame(line.group))) {
-      element.querySelector("figcaption").append(el("span", { class: "note" }, "A click opens the frame."));
+      element.querySelector("figcaption").append(el("span", { class: "note hint" }, "A click opens the frame."));
     }
     this.draw();
     new ResizeObserver(() => this.resize()).observe(this.place);
