@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Errors with a kind, as the library raises them: "argument", "format", "io", "output", "undefined", "stopped", "internal", or
---- "script" for errors of Lua code.
+--- Errors with a kind, as the library raises them: "argument", "format", "io", "output", "undefined", "stopped",
+--- "internal", or "script" for errors of Lua code.
 local aib = require "aib"
 
 local M = {}

@@ -9141,8 +9141,8 @@ struct float_positions {
 namespace aib::io {
 
 /// How much a file may hold: for readers of files that strangers give. What is packed (EXR, PNG,
-/// JPEG, NPZ) is refused before memory is asked for; of other formats, which need as much memory
-/// as the file has bytes, what was read is counted.
+/// JPEG, NPZ, PCD) is refused before memory is asked for; of other formats, which need as much
+/// memory as the file has bytes, what was read is counted.
 struct limits {
   std::uint64_t max_pixels = std::uint64_t{1} << 27;  ///< of a picture or a depth map
   /// Points of a cloud; vertices, and triangles, of a mesh.
@@ -10345,9 +10345,9 @@ namespace aib::io {
 /// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
 /// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
 ///
-/// Throws format_error where the file is damaged.
+/// Throws format_error where the file is damaged or has more points than the limits.
 /// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
-cloud::cloud read_pcd(const std::filesystem::path& path);
+cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits = {});
 
 namespace detail {
 
@@ -10637,9 +10637,10 @@ class pcd_points {
 
 }  // namespace detail
 
-inline cloud::cloud read_pcd(const std::filesystem::path& path) {
+inline cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits) {
   const std::string bytes = read_file(path);
   const auto header = detail::pcd_header_parser(bytes, path).parse();
+  demand_points(path, "points", header.n, limits);
   return detail::pcd_points(header, bytes, path).finish();
 }
 
@@ -12211,7 +12212,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
     case file_kind::ply:
       return read_ply_cloud(path, options.splats);
     case file_kind::pcd:
-      return read_pcd(path);
+      return read_pcd(path, options.limits);
     case file_kind::las:
       return read_las(path);
     case file_kind::text_points:

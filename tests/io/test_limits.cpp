@@ -93,6 +93,11 @@ TEST_CASE("a cloud or a mesh larger than the limit is refused") {
   };
   CHECK(cloud(4).empty());
   CHECK(cloud(3) == "a.obj: 4 points, at most 3 are allowed (max_points)");
+  const auto packed = scratch.file("a.pcd",
+                                   "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+                                   "WIDTH 9\nHEIGHT 1\nPOINTS 9\nDATA binary_compressed\n");
+  CHECK(said([&] { return io::read_cloud(packed, {.limits = {.max_points = 8}}); }) ==
+        "a.pcd: 9 points, at most 8 are allowed (max_points)");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
     case file_kind::ply:
       return read_ply_cloud(path, options.splats);
     case file_kind::pcd:
-      return read_pcd(path);
+      return read_pcd(path, options.limits);
     case file_kind::las:
       return read_las(path);
     case file_kind::text_points:

@@ -13,8 +13,8 @@
 namespace aib::io {
 
 /// How much a file may hold: for readers of files that strangers give. What is packed (EXR, PNG,
-/// JPEG, NPZ) is refused before memory is asked for; of other formats, which need as much memory
-/// as the file has bytes, what was read is counted.
+/// JPEG, NPZ, PCD) is refused before memory is asked for; of other formats, which need as much
+/// memory as the file has bytes, what was read is counted.
 struct limits {
   std::uint64_t max_pixels = std::uint64_t{1} << 27;  ///< of a picture or a depth map
   /// Points of a cloud; vertices, and triangles, of a mesh.

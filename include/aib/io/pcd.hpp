@@ -6,6 +6,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/numbers.hpp>
 #include <aib/io/positions.hpp>
 #include <aib/io/text.hpp>
@@ -31,9 +32,9 @@ namespace aib::io {
 /// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
 /// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
 ///
-/// Throws format_error where the file is damaged.
+/// Throws format_error where the file is damaged or has more points than the limits.
 /// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
-cloud::cloud read_pcd(const std::filesystem::path& path);
+cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits = {});
 
 namespace detail {
 
@@ -323,9 +324,10 @@ class pcd_points {
 
 }  // namespace detail
 
-inline cloud::cloud read_pcd(const std::filesystem::path& path) {
+inline cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits) {
   const std::string bytes = read_file(path);
   const auto header = detail::pcd_header_parser(bytes, path).parse();
+  demand_points(path, "points", header.n, limits);
   return detail::pcd_points(header, bytes, path).finish();
 }
 
