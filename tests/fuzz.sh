@@ -129,6 +129,7 @@ fuzz_reader() {
   [ $status != 0 ] || reader_run "$reader" "$corpus" -max_total_time="$seconds" -max_len=65536 \
     -print_final_stats=1 >>"$log" 2>&1 || status=$?
   end
+  [ $status != 72 ] || status=0  # somebody interrupted it: that is no finding
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
   edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1 | tr -dc 0-9)
   conclude "$reader" $((${runs:-0} + ${known:-0})) "${edges:--}" $status "$log"
