@@ -14,5 +14,6 @@
 #include <aib/core/prefetch.hpp>
 #include <aib/core/random.hpp>
 #include <aib/core/simd.hpp>
+#include <aib/core/simd_doubled.hpp>
 #include <aib/core/simd_integers.hpp>
 #include <aib/core/simd_wide.hpp>

@@ -2099,6 +2099,57 @@ inline void prefetch_write([[maybe_unused]] void* p) {
 
 }  // namespace aib
 
+// aib/core/simd_doubled.hpp
+
+namespace aib {
+
+inline namespace AIB_ISA {
+
+/// Twice as many lanes, in halves, with every operation that the halves have.
+template <class Half, class Scalar>
+struct doubled_lanes {
+  static constexpr std::size_t width = 2 * Half::width;
+  Half lo, hi;
+
+  static doubled_lanes load(const Scalar* p) {
+    return {Half::load(p), Half::load(p + Half::width)};
+  }
+  static doubled_lanes convert(const float* p) {
+    return {Half::convert(p), Half::convert(p + Half::width)};
+  }
+  static doubled_lanes broadcast(Scalar x) { return {Half::broadcast(x), Half::broadcast(x)}; }
+  void store(Scalar* p) const {
+    lo.store(p);
+    hi.store(p + Half::width);
+  }
+
+  using lanes = doubled_lanes;
+  friend lanes operator+(lanes a, lanes b) { return {a.lo + b.lo, a.hi + b.hi}; }
+  friend lanes operator-(lanes a, lanes b) { return {a.lo - b.lo, a.hi - b.hi}; }
+  friend lanes operator*(lanes a, lanes b) { return {a.lo * b.lo, a.hi * b.hi}; }
+  friend lanes operator/(lanes a, lanes b) { return {a.lo / b.lo, a.hi / b.hi}; }
+  friend lanes operator&(lanes a, lanes b) { return {a.lo & b.lo, a.hi & b.hi}; }
+  friend lanes operator|(lanes a, lanes b) { return {a.lo | b.lo, a.hi | b.hi}; }
+  friend lanes operator^(lanes a, lanes b) { return {a.lo ^ b.lo, a.hi ^ b.hi}; }
+  friend lanes operator<<(lanes a, int bits) { return {a.lo << bits, a.hi << bits}; }
+  friend lanes operator>>(lanes a, int bits) { return {a.lo >> bits, a.hi >> bits}; }
+  friend lanes sqrt(lanes a) { return {sqrt(a.lo), sqrt(a.hi)}; }
+  friend lanes min(lanes a, lanes b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+  friend lanes max(lanes a, lanes b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+  friend unsigned less(lanes a, lanes b) {
+    return less(a.lo, b.lo) | less(a.hi, b.hi) << Half::width;
+  }
+  friend lanes choose(lanes a, lanes b, lanes x, lanes y) {
+    return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
+  }
+  friend lanes mantissa(lanes a) { return {mantissa(a.lo), mantissa(a.hi)}; }
+  friend lanes exponent(lanes a) { return {exponent(a.lo), exponent(a.hi)}; }
+};
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
+
 // aib/core/simd.hpp
 
 #if !defined(AIB_PLAIN) && defined(__SSE2__)
@@ -2186,102 +2237,69 @@ struct f64x4 {
 
 #elif !defined(AIB_PLAIN) && defined(__SSE2__)
 
-struct f32x8 {
-  static constexpr std::size_t width = 8;
-  __m128 lo, hi;
-
-  static f32x8 load(const float* p) { return {_mm_loadu_ps(p), _mm_loadu_ps(p + 4)}; }
-  static f32x8 broadcast(float x) { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
-  void store(float* p) const {
-    _mm_storeu_ps(p, lo);
-    _mm_storeu_ps(p + 4, hi);
-  }
-
-  friend f32x8 operator+(f32x8 a, f32x8 b) {
-    return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator-(f32x8 a, f32x8 b) {
-    return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator*(f32x8 a, f32x8 b) {
-    return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator/(f32x8 a, f32x8 b) {
-    return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)};
-  }
-  friend f32x8 sqrt(f32x8 a) { return {_mm_sqrt_ps(a.lo), _mm_sqrt_ps(a.hi)}; }
-  friend f32x8 min(f32x8 a, f32x8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
-  friend f32x8 max(f32x8 a, f32x8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
-  friend unsigned less(f32x8 a, f32x8 b) {
-    const int low = _mm_movemask_ps(_mm_cmplt_ps(a.lo, b.lo));
-    const int high = _mm_movemask_ps(_mm_cmplt_ps(a.hi, b.hi));
-    return static_cast<unsigned>(low | high << 4);
-  }
-  friend f32x8 choose(f32x8 a, f32x8 b, f32x8 x, f32x8 y) {
-    const auto half = [](__m128 mask, __m128 yes, __m128 no) {
-      return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
-    };
-    return {half(_mm_cmplt_ps(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_ps(a.hi, b.hi), x.hi, y.hi)};
-  }
-};
-
-struct f64x4 {
+struct f32x4 {
   static constexpr std::size_t width = 4;
-  __m128d lo, hi;
+  __m128 v;
 
-  static f64x4 load(const double* p) { return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)}; }
-  static f64x4 convert(const float* p) {
-    const __m128 floats = _mm_loadu_ps(p);
-    return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
-  }
-  static f64x4 broadcast(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
-  void store(double* p) const {
-    _mm_storeu_pd(p, lo);
-    _mm_storeu_pd(p + 2, hi);
-  }
+  static f32x4 load(const float* p) { return {_mm_loadu_ps(p)}; }
+  static f32x4 broadcast(float x) { return {_mm_set1_ps(x)}; }
+  void store(float* p) const { _mm_storeu_ps(p, v); }
 
-  friend f64x4 operator+(f64x4 a, f64x4 b) {
-    return {_mm_add_pd(a.lo, b.lo), _mm_add_pd(a.hi, b.hi)};
+  friend f32x4 operator+(f32x4 a, f32x4 b) { return {_mm_add_ps(a.v, b.v)}; }
+  friend f32x4 operator-(f32x4 a, f32x4 b) { return {_mm_sub_ps(a.v, b.v)}; }
+  friend f32x4 operator*(f32x4 a, f32x4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+  friend f32x4 operator/(f32x4 a, f32x4 b) { return {_mm_div_ps(a.v, b.v)}; }
+  friend f32x4 sqrt(f32x4 a) { return {_mm_sqrt_ps(a.v)}; }
+  friend f32x4 min(f32x4 a, f32x4 b) { return {_mm_min_ps(a.v, b.v)}; }
+  friend f32x4 max(f32x4 a, f32x4 b) { return {_mm_max_ps(a.v, b.v)}; }
+  friend unsigned less(f32x4 a, f32x4 b) {
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_cmplt_ps(a.v, b.v)));
   }
-  friend f64x4 operator-(f64x4 a, f64x4 b) {
-    return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)};
-  }
-  friend f64x4 operator*(f64x4 a, f64x4 b) {
-    return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)};
-  }
-  friend f64x4 operator/(f64x4 a, f64x4 b) {
-    return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)};
-  }
-  friend f64x4 sqrt(f64x4 a) { return {_mm_sqrt_pd(a.lo), _mm_sqrt_pd(a.hi)}; }
-  friend f64x4 min(f64x4 a, f64x4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
-  friend f64x4 max(f64x4 a, f64x4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
-  friend unsigned less(f64x4 a, f64x4 b) {
-    const int low = _mm_movemask_pd(_mm_cmplt_pd(a.lo, b.lo));
-    const int high = _mm_movemask_pd(_mm_cmplt_pd(a.hi, b.hi));
-    return static_cast<unsigned>(low | high << 2);
-  }
-  friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
-    const auto half = [](__m128d mask, __m128d yes, __m128d no) {
-      return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
-    };
-    return {half(_mm_cmplt_pd(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_pd(a.hi, b.hi), x.hi, y.hi)};
-  }
-  friend f64x4 mantissa(f64x4 a) {
-    const auto half = [](__m128d x) {
-      const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
-      return _mm_or_pd(_mm_and_pd(x, fraction), _mm_set1_pd(1));
-    };
-    return {half(a.lo), half(a.hi)};
-  }
-  friend f64x4 exponent(f64x4 a) {
-    const auto half = [](__m128d x) {
-      const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(x), 52));
-      return _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)),
-                        _mm_set1_pd(detail::exponent_offset));
-    };
-    return {half(a.lo), half(a.hi)};
+  friend f32x4 choose(f32x4 a, f32x4 b, f32x4 x, f32x4 y) {
+    const __m128 mask = _mm_cmplt_ps(a.v, b.v);
+    return {_mm_or_ps(_mm_and_ps(mask, x.v), _mm_andnot_ps(mask, y.v))};
   }
 };
+
+struct f64x2 {
+  static constexpr std::size_t width = 2;
+  __m128d v;
+
+  static f64x2 load(const double* p) { return {_mm_loadu_pd(p)}; }
+  static f64x2 convert(const float* p) {
+    const __m128i floats = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
+    return {_mm_cvtps_pd(_mm_castsi128_ps(floats))};
+  }
+  static f64x2 broadcast(double x) { return {_mm_set1_pd(x)}; }
+  void store(double* p) const { _mm_storeu_pd(p, v); }
+
+  friend f64x2 operator+(f64x2 a, f64x2 b) { return {_mm_add_pd(a.v, b.v)}; }
+  friend f64x2 operator-(f64x2 a, f64x2 b) { return {_mm_sub_pd(a.v, b.v)}; }
+  friend f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
+  friend f64x2 operator/(f64x2 a, f64x2 b) { return {_mm_div_pd(a.v, b.v)}; }
+  friend f64x2 sqrt(f64x2 a) { return {_mm_sqrt_pd(a.v)}; }
+  friend f64x2 min(f64x2 a, f64x2 b) { return {_mm_min_pd(a.v, b.v)}; }
+  friend f64x2 max(f64x2 a, f64x2 b) { return {_mm_max_pd(a.v, b.v)}; }
+  friend unsigned less(f64x2 a, f64x2 b) {
+    return static_cast<unsigned>(_mm_movemask_pd(_mm_cmplt_pd(a.v, b.v)));
+  }
+  friend f64x2 choose(f64x2 a, f64x2 b, f64x2 x, f64x2 y) {
+    const __m128d mask = _mm_cmplt_pd(a.v, b.v);
+    return {_mm_or_pd(_mm_and_pd(mask, x.v), _mm_andnot_pd(mask, y.v))};
+  }
+  friend f64x2 mantissa(f64x2 a) {
+    const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
+    return {_mm_or_pd(_mm_and_pd(a.v, fraction), _mm_set1_pd(1))};
+  }
+  friend f64x2 exponent(f64x2 a) {
+    const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(a.v), 52));
+    return {
+        _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)), _mm_set1_pd(detail::exponent_offset))};
+  }
+};
+
+using f32x8 = doubled_lanes<f32x4, float>;
+using f64x4 = doubled_lanes<f64x2, double>;
 
 #else
 
@@ -2466,42 +2484,25 @@ struct u32x8 {
 
 #elif !defined(AIB_PLAIN) && defined(__SSE2__)
 
-struct u32x8 {
-  static constexpr std::size_t width = 8;
-  __m128i lo, hi;
+struct u32x4 {
+  static constexpr std::size_t width = 4;
+  __m128i v;
 
-  static u32x8 load(const std::uint32_t* p) {
-    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)),
-            _mm_loadu_si128(reinterpret_cast<const __m128i*>(p + 4))};
+  static u32x4 load(const std::uint32_t* p) {
+    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))};
   }
-  static u32x8 broadcast(std::uint32_t x) {
-    const __m128i all = _mm_set1_epi32(static_cast<int>(x));
-    return {all, all};
-  }
-  void store(std::uint32_t* p) const {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), lo);
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 4), hi);
-  }
+  static u32x4 broadcast(std::uint32_t x) { return {_mm_set1_epi32(static_cast<int>(x))}; }
+  void store(std::uint32_t* p) const { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), v); }
 
-  friend u32x8 operator&(u32x8 a, u32x8 b) {
-    return {_mm_and_si128(a.lo, b.lo), _mm_and_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator|(u32x8 a, u32x8 b) {
-    return {_mm_or_si128(a.lo, b.lo), _mm_or_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator^(u32x8 a, u32x8 b) {
-    return {_mm_xor_si128(a.lo, b.lo), _mm_xor_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator-(u32x8 a, u32x8 b) {
-    return {_mm_sub_epi32(a.lo, b.lo), _mm_sub_epi32(a.hi, b.hi)};
-  }
-  friend u32x8 operator<<(u32x8 a, int bits) {
-    return {_mm_slli_epi32(a.lo, bits), _mm_slli_epi32(a.hi, bits)};
-  }
-  friend u32x8 operator>>(u32x8 a, int bits) {
-    return {_mm_srli_epi32(a.lo, bits), _mm_srli_epi32(a.hi, bits)};
-  }
+  friend u32x4 operator&(u32x4 a, u32x4 b) { return {_mm_and_si128(a.v, b.v)}; }
+  friend u32x4 operator|(u32x4 a, u32x4 b) { return {_mm_or_si128(a.v, b.v)}; }
+  friend u32x4 operator^(u32x4 a, u32x4 b) { return {_mm_xor_si128(a.v, b.v)}; }
+  friend u32x4 operator-(u32x4 a, u32x4 b) { return {_mm_sub_epi32(a.v, b.v)}; }
+  friend u32x4 operator<<(u32x4 a, int bits) { return {_mm_slli_epi32(a.v, bits)}; }
+  friend u32x4 operator>>(u32x4 a, int bits) { return {_mm_srli_epi32(a.v, bits)}; }
 };
+
+using u32x8 = doubled_lanes<u32x4, std::uint32_t>;
 
 #else
 
@@ -3107,41 +3108,6 @@ struct f64x8 {
 };
 
 #else
-
-/// Twice as many lanes, in halves.
-template <class Half, class Scalar>
-struct doubled_lanes {
-  static constexpr std::size_t width = 2 * Half::width;
-  Half lo, hi;
-
-  static doubled_lanes load(const Scalar* p) {
-    return {Half::load(p), Half::load(p + Half::width)};
-  }
-  static doubled_lanes convert(const float* p) {
-    return {Half::convert(p), Half::convert(p + Half::width)};
-  }
-  static doubled_lanes broadcast(Scalar x) { return {Half::broadcast(x), Half::broadcast(x)}; }
-  void store(Scalar* p) const {
-    lo.store(p);
-    hi.store(p + Half::width);
-  }
-
-  using lanes = doubled_lanes;
-  friend lanes operator+(lanes a, lanes b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend lanes operator-(lanes a, lanes b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend lanes operator*(lanes a, lanes b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  friend lanes operator/(lanes a, lanes b) { return {a.lo / b.lo, a.hi / b.hi}; }
-  friend lanes min(lanes a, lanes b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
-  friend lanes max(lanes a, lanes b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
-  friend unsigned less(lanes a, lanes b) {
-    return less(a.lo, b.lo) | less(a.hi, b.hi) << Half::width;
-  }
-  friend lanes choose(lanes a, lanes b, lanes x, lanes y) {
-    return {choose(a.lo, b.lo, x.lo, y.lo), choose(a.hi, b.hi, x.hi, y.hi)};
-  }
-  friend lanes mantissa(lanes a) { return {mantissa(a.lo), mantissa(a.hi)}; }
-  friend lanes exponent(lanes a) { return {exponent(a.lo), exponent(a.hi)}; }
-};
 
 using f32x16 = doubled_lanes<f32x8, float>;
 using f64x8 = doubled_lanes<f64x4, double>;

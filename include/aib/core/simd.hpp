@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/isa.hpp>
+#include <aib/core/simd_doubled.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -96,102 +97,69 @@ struct f64x4 {
 
 #elif !defined(AIB_PLAIN) && defined(__SSE2__)
 
-struct f32x8 {
-  static constexpr std::size_t width = 8;
-  __m128 lo, hi;
-
-  static f32x8 load(const float* p) { return {_mm_loadu_ps(p), _mm_loadu_ps(p + 4)}; }
-  static f32x8 broadcast(float x) { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
-  void store(float* p) const {
-    _mm_storeu_ps(p, lo);
-    _mm_storeu_ps(p + 4, hi);
-  }
-
-  friend f32x8 operator+(f32x8 a, f32x8 b) {
-    return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator-(f32x8 a, f32x8 b) {
-    return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator*(f32x8 a, f32x8 b) {
-    return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)};
-  }
-  friend f32x8 operator/(f32x8 a, f32x8 b) {
-    return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)};
-  }
-  friend f32x8 sqrt(f32x8 a) { return {_mm_sqrt_ps(a.lo), _mm_sqrt_ps(a.hi)}; }
-  friend f32x8 min(f32x8 a, f32x8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
-  friend f32x8 max(f32x8 a, f32x8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
-  friend unsigned less(f32x8 a, f32x8 b) {
-    const int low = _mm_movemask_ps(_mm_cmplt_ps(a.lo, b.lo));
-    const int high = _mm_movemask_ps(_mm_cmplt_ps(a.hi, b.hi));
-    return static_cast<unsigned>(low | high << 4);
-  }
-  friend f32x8 choose(f32x8 a, f32x8 b, f32x8 x, f32x8 y) {
-    const auto half = [](__m128 mask, __m128 yes, __m128 no) {
-      return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
-    };
-    return {half(_mm_cmplt_ps(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_ps(a.hi, b.hi), x.hi, y.hi)};
-  }
-};
-
-struct f64x4 {
+struct f32x4 {
   static constexpr std::size_t width = 4;
-  __m128d lo, hi;
+  __m128 v;
 
-  static f64x4 load(const double* p) { return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)}; }
-  static f64x4 convert(const float* p) {
-    const __m128 floats = _mm_loadu_ps(p);
-    return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
-  }
-  static f64x4 broadcast(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
-  void store(double* p) const {
-    _mm_storeu_pd(p, lo);
-    _mm_storeu_pd(p + 2, hi);
-  }
+  static f32x4 load(const float* p) { return {_mm_loadu_ps(p)}; }
+  static f32x4 broadcast(float x) { return {_mm_set1_ps(x)}; }
+  void store(float* p) const { _mm_storeu_ps(p, v); }
 
-  friend f64x4 operator+(f64x4 a, f64x4 b) {
-    return {_mm_add_pd(a.lo, b.lo), _mm_add_pd(a.hi, b.hi)};
+  friend f32x4 operator+(f32x4 a, f32x4 b) { return {_mm_add_ps(a.v, b.v)}; }
+  friend f32x4 operator-(f32x4 a, f32x4 b) { return {_mm_sub_ps(a.v, b.v)}; }
+  friend f32x4 operator*(f32x4 a, f32x4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+  friend f32x4 operator/(f32x4 a, f32x4 b) { return {_mm_div_ps(a.v, b.v)}; }
+  friend f32x4 sqrt(f32x4 a) { return {_mm_sqrt_ps(a.v)}; }
+  friend f32x4 min(f32x4 a, f32x4 b) { return {_mm_min_ps(a.v, b.v)}; }
+  friend f32x4 max(f32x4 a, f32x4 b) { return {_mm_max_ps(a.v, b.v)}; }
+  friend unsigned less(f32x4 a, f32x4 b) {
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_cmplt_ps(a.v, b.v)));
   }
-  friend f64x4 operator-(f64x4 a, f64x4 b) {
-    return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)};
-  }
-  friend f64x4 operator*(f64x4 a, f64x4 b) {
-    return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)};
-  }
-  friend f64x4 operator/(f64x4 a, f64x4 b) {
-    return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)};
-  }
-  friend f64x4 sqrt(f64x4 a) { return {_mm_sqrt_pd(a.lo), _mm_sqrt_pd(a.hi)}; }
-  friend f64x4 min(f64x4 a, f64x4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
-  friend f64x4 max(f64x4 a, f64x4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
-  friend unsigned less(f64x4 a, f64x4 b) {
-    const int low = _mm_movemask_pd(_mm_cmplt_pd(a.lo, b.lo));
-    const int high = _mm_movemask_pd(_mm_cmplt_pd(a.hi, b.hi));
-    return static_cast<unsigned>(low | high << 2);
-  }
-  friend f64x4 choose(f64x4 a, f64x4 b, f64x4 x, f64x4 y) {
-    const auto half = [](__m128d mask, __m128d yes, __m128d no) {
-      return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
-    };
-    return {half(_mm_cmplt_pd(a.lo, b.lo), x.lo, y.lo), half(_mm_cmplt_pd(a.hi, b.hi), x.hi, y.hi)};
-  }
-  friend f64x4 mantissa(f64x4 a) {
-    const auto half = [](__m128d x) {
-      const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
-      return _mm_or_pd(_mm_and_pd(x, fraction), _mm_set1_pd(1));
-    };
-    return {half(a.lo), half(a.hi)};
-  }
-  friend f64x4 exponent(f64x4 a) {
-    const auto half = [](__m128d x) {
-      const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(x), 52));
-      return _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)),
-                        _mm_set1_pd(detail::exponent_offset));
-    };
-    return {half(a.lo), half(a.hi)};
+  friend f32x4 choose(f32x4 a, f32x4 b, f32x4 x, f32x4 y) {
+    const __m128 mask = _mm_cmplt_ps(a.v, b.v);
+    return {_mm_or_ps(_mm_and_ps(mask, x.v), _mm_andnot_ps(mask, y.v))};
   }
 };
+
+struct f64x2 {
+  static constexpr std::size_t width = 2;
+  __m128d v;
+
+  static f64x2 load(const double* p) { return {_mm_loadu_pd(p)}; }
+  static f64x2 convert(const float* p) {
+    const __m128i floats = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
+    return {_mm_cvtps_pd(_mm_castsi128_ps(floats))};
+  }
+  static f64x2 broadcast(double x) { return {_mm_set1_pd(x)}; }
+  void store(double* p) const { _mm_storeu_pd(p, v); }
+
+  friend f64x2 operator+(f64x2 a, f64x2 b) { return {_mm_add_pd(a.v, b.v)}; }
+  friend f64x2 operator-(f64x2 a, f64x2 b) { return {_mm_sub_pd(a.v, b.v)}; }
+  friend f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
+  friend f64x2 operator/(f64x2 a, f64x2 b) { return {_mm_div_pd(a.v, b.v)}; }
+  friend f64x2 sqrt(f64x2 a) { return {_mm_sqrt_pd(a.v)}; }
+  friend f64x2 min(f64x2 a, f64x2 b) { return {_mm_min_pd(a.v, b.v)}; }
+  friend f64x2 max(f64x2 a, f64x2 b) { return {_mm_max_pd(a.v, b.v)}; }
+  friend unsigned less(f64x2 a, f64x2 b) {
+    return static_cast<unsigned>(_mm_movemask_pd(_mm_cmplt_pd(a.v, b.v)));
+  }
+  friend f64x2 choose(f64x2 a, f64x2 b, f64x2 x, f64x2 y) {
+    const __m128d mask = _mm_cmplt_pd(a.v, b.v);
+    return {_mm_or_pd(_mm_and_pd(mask, x.v), _mm_andnot_pd(mask, y.v))};
+  }
+  friend f64x2 mantissa(f64x2 a) {
+    const __m128d fraction = _mm_castsi128_pd(_mm_set1_epi64x(detail::fraction_bits));
+    return {_mm_or_pd(_mm_and_pd(a.v, fraction), _mm_set1_pd(1))};
+  }
+  friend f64x2 exponent(f64x2 a) {
+    const __m128d shifted = _mm_castsi128_pd(_mm_srli_epi64(_mm_castpd_si128(a.v), 52));
+    return {
+        _mm_sub_pd(_mm_or_pd(shifted, _mm_set1_pd(0x1p52)), _mm_set1_pd(detail::exponent_offset))};
+  }
+};
+
+using f32x8 = doubled_lanes<f32x4, float>;
+using f64x4 = doubled_lanes<f64x2, double>;
 
 #else
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/core/isa.hpp>
+#include <aib/core/simd_doubled.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -40,42 +41,25 @@ struct u32x8 {
 
 #elif !defined(AIB_PLAIN) && defined(__SSE2__)
 
-struct u32x8 {
-  static constexpr std::size_t width = 8;
-  __m128i lo, hi;
+struct u32x4 {
+  static constexpr std::size_t width = 4;
+  __m128i v;
 
-  static u32x8 load(const std::uint32_t* p) {
-    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)),
-            _mm_loadu_si128(reinterpret_cast<const __m128i*>(p + 4))};
+  static u32x4 load(const std::uint32_t* p) {
+    return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))};
   }
-  static u32x8 broadcast(std::uint32_t x) {
-    const __m128i all = _mm_set1_epi32(static_cast<int>(x));
-    return {all, all};
-  }
-  void store(std::uint32_t* p) const {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), lo);
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 4), hi);
-  }
+  static u32x4 broadcast(std::uint32_t x) { return {_mm_set1_epi32(static_cast<int>(x))}; }
+  void store(std::uint32_t* p) const { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), v); }
 
-  friend u32x8 operator&(u32x8 a, u32x8 b) {
-    return {_mm_and_si128(a.lo, b.lo), _mm_and_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator|(u32x8 a, u32x8 b) {
-    return {_mm_or_si128(a.lo, b.lo), _mm_or_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator^(u32x8 a, u32x8 b) {
-    return {_mm_xor_si128(a.lo, b.lo), _mm_xor_si128(a.hi, b.hi)};
-  }
-  friend u32x8 operator-(u32x8 a, u32x8 b) {
-    return {_mm_sub_epi32(a.lo, b.lo), _mm_sub_epi32(a.hi, b.hi)};
-  }
-  friend u32x8 operator<<(u32x8 a, int bits) {
-    return {_mm_slli_epi32(a.lo, bits), _mm_slli_epi32(a.hi, bits)};
-  }
-  friend u32x8 operator>>(u32x8 a, int bits) {
-    return {_mm_srli_epi32(a.lo, bits), _mm_srli_epi32(a.hi, bits)};
-  }
+  friend u32x4 operator&(u32x4 a, u32x4 b) { return {_mm_and_si128(a.v, b.v)}; }
+  friend u32x4 operator|(u32x4 a, u32x4 b) { return {_mm_or_si128(a.v, b.v)}; }
+  friend u32x4 operator^(u32x4 a, u32x4 b) { return {_mm_xor_si128(a.v, b.v)}; }
+  friend u32x4 operator-(u32x4 a, u32x4 b) { return {_mm_sub_epi32(a.v, b.v)}; }
+  friend u32x4 operator<<(u32x4 a, int bits) { return {_mm_slli_epi32(a.v, bits)}; }
+  friend u32x4 operator>>(u32x4 a, int bits) { return {_mm_srli_epi32(a.v, bits)}; }
 };
+
+using u32x8 = doubled_lanes<u32x4, std::uint32_t>;
 
 #else
 
