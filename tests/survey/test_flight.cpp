@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include <aib/core/random.hpp>
 #include <aib/io/waypoints.hpp>
 #include <aib/math/geodesy.hpp>
 #include <aib/mesh/distances.hpp>
@@ -10,6 +11,7 @@
 #include <aib/survey/linear.hpp>
 #include <aib/survey/measure.hpp>
 #include <aib/survey/orbit.hpp>
+#include <aib/survey/outline.hpp>
 
 #include <doctest/doctest.h>
 
@@ -191,6 +193,31 @@ TEST_CASE("rows keep the stand-off from walls that turn inwards, and see all of 
     CHECK(overlap.size() > 8);
     CHECK(overlap[overlap.size() / 2] > plan.overlap - 0.03);
     CHECK(overlap.front() > plan.overlap - 0.1);
+  }
+}
+
+TEST_CASE("the way round any footprint closes, goes round once and keeps the stand-off") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    random_engine random(seed);
+    const double n = std::floor(random.uniform(3, 16)), stand_off = random.uniform(0.2, 8);
+    std::vector<Eigen::Vector2d> corners;
+    for (double i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.3 * random.uniform()) / n;
+      corners.push_back(random.uniform(2, 20) * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    const auto around = survey::outline(corners, stand_off);
+    double turned = 0;
+    Eigen::Vector3d last = around.back().way.at(1).translation;
+    for (const auto& piece : around) {
+      REQUIRE((piece.way.at(0).translation - last).norm() < 1e-6);
+      for (double share = 0; share <= 1; share += 0.125) {
+        const Eigen::Vector3d next = piece.way.at(share).translation;
+        REQUIRE(distance_to(corners, next) > stand_off - 1e-6);
+        turned += std::atan2(last.cross(next).z(), last.dot(next));
+        last = next;
+      }
+    }
+    REQUIRE(turned == doctest::Approx(2 * std::numbers::pi));
   }
 }
 
