@@ -35,7 +35,7 @@ calls() (
   away=$(mktemp -d)
   trap 'rm -rf "$away"' EXIT
   cd "$away"
-  ASAN_OPTIONS=detect_leaks=0:max_allocation_size_mb=1100:allocator_may_return_null=1:hard_rss_limit_mb=3000 \
+  AIB_FUZZ_SMALL=1 ASAN_OPTIONS=detect_leaks=0:max_allocation_size_mb=1100:hard_rss_limit_mb=3000 \
     "$shell" "$script" 20000 1
 )
 
