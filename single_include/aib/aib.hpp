@@ -25578,6 +25578,8 @@ inline std::vector<outline_piece> outline(const std::vector<Eigen::Vector2d>& co
       if (part.way.length() > rounding && distance >= stand_off - rounding) free.push_back(part);
     }
   }
+  if (free.empty())
+    throw argument_error("survey::outline: corners too near to each other to find a way round");
   // Pockets behind narrow openings have loops of their own; that round all reaches farthest.
   const auto leftmost =
       std::min_element(free.begin(), free.end(), [](const auto& a, const auto& b) {
