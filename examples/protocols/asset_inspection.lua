@@ -65,8 +65,8 @@ end
 --- AUC is of pairs of images, chamfer distance and F1 are of points, so that nothing in them is paired.
 local paired <const> = {
   { "srmse", "depth.srmse" }, { "coverage", "depth.coverage" }, { "abs_rel", "depth.abs_rel" },
-  { "delta1", "depth.delta1" }, { "ape", "pose.ape_rmse", unit = "m" }, { "registration_rate", "pose.registration_rate" },
-  { "focal_mre", "camera.focal_mre" },
+  { "delta1", "depth.delta1" }, { "ape", "pose.ape_rmse", unit = "m" },
+  { "registration_rate", "pose.registration_rate" }, { "focal_mre", "camera.focal_mre" },
 }
 
 --- Changes of every metric that is paired over the conditions of one scene for one method.

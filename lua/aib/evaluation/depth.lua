@@ -6,8 +6,8 @@
 ---
 --- A source says where maps are and how they are scaled: { n_expected =, pattern = of files | nil, series =, maps = }.
 --- Each series is scored with scales of its own: { method = name where it is not the unit's, how = options of what is
---- of a length }. Each map is { name =, place = number of its image, read = function(files), confidence = function()|nil,
---- scales = { by series; false where it is not known } }.
+--- of a length }. Each map is { name =, place = number of its image, read = function(files),
+--- confidence = function()|nil, scales = { by series; false where it is not known } }.
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
 local with = require "aib.evaluation.with"
