@@ -8,7 +8,7 @@
 #   tests/fuzz.sh MINUTES [READER ...]
 #   tests/fuzz.sh --totals               what all runs came to, a line each reader
 #
-#   MINUTES   in all, shared by the readers (a fraction is fine)
+#   MINUTES   in all, shared by the readers (a fraction is fine), AIB_JOBS of which run at a time (1)
 #   READER    depth.exr, mesh.ply, ...; without one: all. `calls` gives made-up values to every
 #             function of the scripting interface, by build/lua/aib-lua
 #
@@ -23,6 +23,7 @@ cd "$(dirname "$0")/.."
 minutes=$1
 shift
 work=${AIB_FUZZ:-build-fuzz}
+jobs=${AIB_JOBS:-1}
 
 totals() {
   [ -f "$work/ledger" ] || { echo "$work/ledger: no run so far"; return; }
@@ -51,16 +52,20 @@ if [ ! -x "$program" ] || [ -n "$(find include tests/fuzz -newer "$program" -nam
 fi
 
 aib_lua=${AIB_LUA:-build/lua/aib-lua}
-readers=("$@")
-if [ ${#readers[@]} = 0 ]; then
-  mapfile -t readers < <("$program" 2>/dev/null)
-  [ ! -x "$aib_lua" ] || readers+=(calls)
-fi
+mapfile -t targets < <("$program" 2>/dev/null)
+[ ! -x "$aib_lua" ] || targets+=(calls)
+readers=("${@:-"${targets[@]}"}")
+for reader in "${readers[@]}"; do
+  [[ " ${targets[*]} " == *" $reader "* ]] || {
+    echo "fuzz: no target '$reader' (here: ${targets[*]})" >&2
+    exit 2
+  }
+done
 # Files that are read lie in memory where that is there.
 away=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
 trap 'rm -rf "$away"' EXIT
-seconds=$(python3 -c "print(max(1, int(60 * $minutes / ${#readers[@]})))")
-echo "fuzz: ${#readers[@]} targets, $seconds s each"
+seconds=$(python3 -c "print(max(1, int(60 * $minutes * $jobs / ${#readers[@]})))")
+echo "fuzz: ${#readers[@]} targets, $seconds s each, $jobs at a time"
 
 # files_of READER FOLDER ...: files with the extension that the reader is given, or in a folder of that name.
 files_of() {
@@ -101,18 +106,13 @@ replay() {
   echo ${#known[@]}
 }
 
-# Processor time between begin and end: a run that was stopped for a while counts for what it did.
-# (`times` in a subshell tells of that alone, so it is not piped.)
-begin() { times >"$work/begin"; }
-end() { times >"$work/end"; }
-spent() {
-  awk 'FNR == 2 { for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s[FILENAME] += 60 * t[1] + t[2] } }
-    END { printf "%.1f", s[ARGV[2]] - s[ARGV[1]] }' "$work/begin" "$work/end"
-}
-
-# conclude TARGET RUNS EDGES STATUS WHERE: the line of a run, and its place in the ledger.
+# conclude TARGET RUNS EDGES STATUS WHERE: the line of a run, and its place in the ledger, with the
+# processor time of the target's subshell: a run that was stopped for a while counts for what it did.
 conclude() {
-  echo "$1 $(spent) $2 $3 $(($4 != 0))" >>"$work/ledger"
+  local spent
+  times >"$work/$1.times"
+  spent=$(awk 'FNR == 2 { split($1 "m" $2, t, /[ms]+/); printf "%.1f", 60 * (t[1] + t[3]) + t[2] + t[4] }' "$work/$1.times")
+  echo "$1 $spent $2 $3 $(($4 != 0))" >>"$work/ledger"
   printf '%-16s %9s runs %7s edges  %s\n' "${@:1:3}" "$([ "$4" = 0 ] && echo 'nothing found' || echo "FOUND: see $5")"
   return "$4"
 }
@@ -120,7 +120,6 @@ conclude() {
 fuzz_reader() {
   local reader=$1 log=$work/$1.log corpus=$work/corpus/$1 seed known runs edges status=0
   : >"$log"
-  begin
   known=$(replay "$reader") || status=1
   if [ ! -d "$corpus" ]; then
     mkdir -p "$corpus"
@@ -128,7 +127,6 @@ fuzz_reader() {
   fi
   [ $status != 0 ] || reader_run "$reader" "$corpus" -max_total_time="$seconds" -max_len=65536 \
     -print_final_stats=1 >>"$log" 2>&1 || status=$?
-  end
   [ $status != 72 ] || status=0  # somebody interrupted it: that is no finding
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
   edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1 | tr -dc 0-9)
@@ -143,21 +141,31 @@ fuzz_calls() {
   seed=${first:=0}
   stop_at=$(($(date +%s) + seconds))
   : >"$log"
-  begin
   while [ $status = 0 ] && { [ "$seed" = "$first" ] || [ "$(date +%s)" -lt $stop_at ]; }; do
     seed=$((seed + 1))
     (cd "$away" && ulimit -v 4000000 && AIB_FUZZ_TRACE=1 timeout 120 "$program" "$script" 5000 $seed) >>"$log" 2>"$log.last" || status=$?
   done
-  end
   conclude calls $((5000 * (seed - first))) - $status "$log, seed $seed"
 }
 
-failed=0
-for reader in "${readers[@]}"; do
-  case $reader in
-    calls) fuzz_calls || failed=$((failed + 1)) ;;
-    *) fuzz_reader "$reader" || failed=$((failed + 1)) ;;
+fuzz() {
+  case $1 in
+    calls) fuzz_calls ;;
+    *) fuzz_reader "$1" ;;
   esac
+}
+
+failed=0 running=0
+for reader in "${readers[@]}"; do
+  if [ $running = "$jobs" ]; then
+    wait -n || failed=$((failed + 1))
+    running=$((running - 1))
+  fi
+  (fuzz "$reader" || exit 1) &
+  running=$((running + 1))
+done
+for ((; running > 0; --running)); do
+  wait -n || failed=$((failed + 1))
 done
 echo "$((${#readers[@]} - failed)) passed, $failed failed"
 [ $failed = 0 ]
