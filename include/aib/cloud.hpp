@@ -19,6 +19,7 @@
 #include <aib/cloud/normals.hpp>
 #include <aib/cloud/offsets.hpp>
 #include <aib/cloud/outliers.hpp>
+#include <aib/cloud/point_tree.hpp>
 #include <aib/cloud/positions.hpp>
 #include <aib/cloud/select.hpp>
 #include <aib/cloud/transform.hpp>

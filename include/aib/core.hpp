@@ -16,4 +16,5 @@
 #include <aib/core/simd.hpp>
 #include <aib/core/simd_doubled.hpp>
 #include <aib/core/simd_integers.hpp>
+#include <aib/core/simd_plain.hpp>
 #include <aib/core/simd_wide.hpp>

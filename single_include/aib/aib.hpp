@@ -1778,6 +1778,46 @@ T reduce_chunks(std::size_t n,
 
 }  // namespace aib
 
+// aib/cloud/point_tree.hpp
+
+namespace aib::cloud::detail {
+
+/// Finite positions of a cloud, counted from an origin, and where each stood, as nanoflann asks for
+/// them.
+struct finite_positions {
+  std::vector<Eigen::Vector3d> position;
+  std::vector<std::size_t> source;
+  control how;  ///< asked while a tree is built
+
+  finite_positions(const cloud& c, const Eigen::Vector3d& origin, const control& h) : how(h) {
+    const Eigen::Vector3d shift = c.origin - origin;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      if (!is_finite(c.points[i])) continue;
+      position.push_back(c.points[i].cast<double>() + shift);
+      source.push_back(i);
+    }
+  }
+
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    if (axis == 0 && i % 65536 == 0) demand_go(how);
+    return position[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// A k-d tree over them, in double.
+using point_tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, finite_positions>,
+                                        finite_positions,
+                                        3,
+                                        std::size_t>;
+
+}  // namespace aib::cloud::detail
+
 // aib/align/icp.hpp
 
 namespace aib::align {
@@ -1824,35 +1864,6 @@ struct icp_result {
 
 namespace detail {
 
-/// Finite positions of a cloud, counted from an origin, and where each stood.
-struct icp_points {
-  std::vector<Eigen::Vector3d> position;
-  std::vector<std::size_t> source;
-  const control& how;
-
-  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin, const control& h) : how(h) {
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      if (!cloud::is_finite(c.points[i])) continue;
-      position.push_back(c.position(i) - origin);
-      source.push_back(i);
-    }
-    if (position.empty()) {
-      throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
-    }
-  }
-
-  // The interface that nanoflann asks for.
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
-    return position[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 /// Corresponding points, the estimate's as they lie now.
 struct icp_pairs {
   std::vector<Eigen::Vector3d> estimate;
@@ -1871,15 +1882,20 @@ class icp_solver {
         reference_cloud_(reference),
         estimate_(estimate, reference.origin, options.control),
         reference_(reference, reference.origin, options.control),
-        tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+        tree_(3, reference_, {10}) {
+    demand_points(estimate_, estimate);
+    demand_points(reference_, reference);
+  }
 
   [[nodiscard]] icp_result run();
 
  private:
-  using metric = nanoflann::L2_Simple_Adaptor<double, icp_points>;
-  using tree = nanoflann::KDTreeSingleIndexAdaptor<metric, icp_points, 3, std::size_t>;
   static constexpr std::size_t none = ~std::size_t{0};
 
+  static void demand_points(const cloud::detail::finite_positions& finite, const cloud::cloud& c) {
+    if (!finite.position.empty()) return;
+    throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
+  }
   [[nodiscard]] std::vector<std::size_t> nearest(std::span<const Eigen::Vector3d> moved,
                                                  double max_distance) const;
   [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
@@ -1889,9 +1905,9 @@ class icp_solver {
 
   const icp_options& options_;
   const cloud::cloud& reference_cloud_;
-  icp_points estimate_;
-  icp_points reference_;
-  tree tree_;
+  cloud::detail::finite_positions estimate_;
+  cloud::detail::finite_positions reference_;
+  cloud::detail::point_tree tree_;
 };
 
 inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,
@@ -2150,6 +2166,115 @@ struct doubled_lanes {
 
 }  // namespace aib
 
+// aib/core/simd_plain.hpp
+
+namespace aib {
+
+namespace detail {
+
+inline constexpr std::int64_t fraction_bits = 0x000fffffffffffff;
+/// The exponent bits of x behind the leading bits of 2^52 make the double 2^52 + 1023 + exponent.
+inline constexpr double exponent_offset = 0x1p52 + 1023;
+
+}  // namespace detail
+
+inline namespace AIB_ISA {
+
+/// Lanes in plain code, for machines without vector code of their own here.
+template <class Scalar, std::size_t Width>
+struct plain_lanes {
+  static constexpr std::size_t width = Width;
+  Scalar v[Width];
+
+  static plain_lanes load(const Scalar* p) {
+    plain_lanes out;
+    std::memcpy(out.v, p, sizeof out.v);
+    return out;
+  }
+  static plain_lanes convert(const float* p) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = p[i];
+    return out;
+  }
+  static plain_lanes broadcast(Scalar x) {
+    plain_lanes out;
+    std::fill_n(out.v, Width, x);
+    return out;
+  }
+  void store(Scalar* p) const { std::memcpy(p, v, sizeof v); }
+
+  template <class Op>
+  static plain_lanes each(const plain_lanes& a, const plain_lanes& b, Op op) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = op(a.v[i], b.v[i]);
+    return out;
+  }
+  friend plain_lanes operator+(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x + y; });
+  }
+  friend plain_lanes operator-(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x - y; });
+  }
+  friend plain_lanes operator*(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x * y; });
+  }
+  friend plain_lanes operator/(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x / y; });
+  }
+  friend plain_lanes operator&(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x & y; });
+  }
+  friend plain_lanes operator|(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x | y; });
+  }
+  friend plain_lanes operator^(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x ^ y; });
+  }
+  friend plain_lanes operator<<(const plain_lanes& a, int bits) {
+    return each(a, a, [bits](Scalar x, Scalar) { return x << bits; });
+  }
+  friend plain_lanes operator>>(const plain_lanes& a, int bits) {
+    return each(a, a, [bits](Scalar x, Scalar) { return x >> bits; });
+  }
+  friend plain_lanes sqrt(const plain_lanes& a) {
+    return each(a, a, [](Scalar x, Scalar) { return std::sqrt(x); });
+  }
+  friend plain_lanes min(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x < y ? x : y; });
+  }
+  friend plain_lanes max(const plain_lanes& a, const plain_lanes& b) {
+    return each(a, b, [](Scalar x, Scalar y) { return x > y ? x : y; });
+  }
+  friend unsigned less(const plain_lanes& a, const plain_lanes& b) {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < Width; ++i) bits |= static_cast<unsigned>(a.v[i] < b.v[i]) << i;
+    return bits;
+  }
+  friend plain_lanes choose(const plain_lanes& a,
+                            const plain_lanes& b,
+                            const plain_lanes& x,
+                            const plain_lanes& y) {
+    plain_lanes out;
+    for (std::size_t i = 0; i < Width; ++i) out.v[i] = a.v[i] < b.v[i] ? x.v[i] : y.v[i];
+    return out;
+  }
+  friend plain_lanes mantissa(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      const auto bits = std::bit_cast<std::int64_t>(x) & detail::fraction_bits;
+      return std::bit_cast<Scalar>(bits | std::bit_cast<std::int64_t>(Scalar{1}));
+    });
+  }
+  friend plain_lanes exponent(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
+    return each(a, a, [](Scalar x, Scalar) {
+      return static_cast<Scalar>((std::bit_cast<std::int64_t>(x) >> 52) - 1023);
+    });
+  }
+};
+
+}  // namespace AIB_ISA
+
+}  // namespace aib
+
 // aib/core/simd.hpp
 
 #if !defined(AIB_PLAIN) && defined(__SSE2__)
@@ -2164,14 +2289,6 @@ struct doubled_lanes {
 /// `load` and `store` need no alignment. `convert` loads floats into doubles. Of doubles that are
 /// positive and normal, `mantissa` is in [1, 2) and `exponent` the power of 2 beside it.
 namespace aib {
-
-namespace detail {
-
-inline constexpr std::int64_t fraction_bits = 0x000fffffffffffff;
-/// The exponent bits of x behind the leading bits of 2^52 make the double 2^52 + 1023 + exponent.
-inline constexpr double exponent_offset = 0x1p52 + 1023;
-
-}  // namespace detail
 
 inline namespace AIB_ISA {
 
@@ -2303,82 +2420,6 @@ using f64x4 = doubled_lanes<f64x2, double>;
 
 #else
 
-/// Lanes in plain code, for machines without vector code of their own here.
-template <class Scalar, std::size_t Width>
-struct plain_lanes {
-  static constexpr std::size_t width = Width;
-  Scalar v[Width];
-
-  static plain_lanes load(const Scalar* p) {
-    plain_lanes out;
-    std::memcpy(out.v, p, sizeof out.v);
-    return out;
-  }
-  static plain_lanes convert(const float* p) {
-    plain_lanes out;
-    for (std::size_t i = 0; i < Width; ++i) out.v[i] = p[i];
-    return out;
-  }
-  static plain_lanes broadcast(Scalar x) {
-    plain_lanes out;
-    std::fill_n(out.v, Width, x);
-    return out;
-  }
-  void store(Scalar* p) const { std::memcpy(p, v, sizeof v); }
-
-  template <class Op>
-  static plain_lanes each(const plain_lanes& a, const plain_lanes& b, Op op) {
-    plain_lanes out;
-    for (std::size_t i = 0; i < Width; ++i) out.v[i] = op(a.v[i], b.v[i]);
-    return out;
-  }
-  friend plain_lanes operator+(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x + y; });
-  }
-  friend plain_lanes operator-(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x - y; });
-  }
-  friend plain_lanes operator*(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x * y; });
-  }
-  friend plain_lanes operator/(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x / y; });
-  }
-  friend plain_lanes sqrt(const plain_lanes& a) {
-    return each(a, a, [](Scalar x, Scalar) { return std::sqrt(x); });
-  }
-  friend plain_lanes min(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x < y ? x : y; });
-  }
-  friend plain_lanes max(const plain_lanes& a, const plain_lanes& b) {
-    return each(a, b, [](Scalar x, Scalar y) { return x > y ? x : y; });
-  }
-  friend unsigned less(const plain_lanes& a, const plain_lanes& b) {
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < Width; ++i) bits |= static_cast<unsigned>(a.v[i] < b.v[i]) << i;
-    return bits;
-  }
-  friend plain_lanes choose(const plain_lanes& a,
-                            const plain_lanes& b,
-                            const plain_lanes& x,
-                            const plain_lanes& y) {
-    plain_lanes out;
-    for (std::size_t i = 0; i < Width; ++i) out.v[i] = a.v[i] < b.v[i] ? x.v[i] : y.v[i];
-    return out;
-  }
-  friend plain_lanes mantissa(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
-    return each(a, a, [](Scalar x, Scalar) {
-      const auto bits = std::bit_cast<std::int64_t>(x) & detail::fraction_bits;
-      return std::bit_cast<Scalar>(bits | std::bit_cast<std::int64_t>(Scalar{1}));
-    });
-  }
-  friend plain_lanes exponent(const plain_lanes& a) requires(sizeof(Scalar) == 8) {
-    return each(a, a, [](Scalar x, Scalar) {
-      return static_cast<Scalar>((std::bit_cast<std::int64_t>(x) >> 52) - 1023);
-    });
-  }
-};
-
 using f32x8 = plain_lanes<float, 8>;
 using f64x4 = plain_lanes<double, 4>;
 
@@ -2506,45 +2547,7 @@ using u32x8 = doubled_lanes<u32x4, std::uint32_t>;
 
 #else
 
-struct u32x8 {
-  static constexpr std::size_t width = 8;
-  std::uint32_t v[width];
-
-  static u32x8 load(const std::uint32_t* p) {
-    u32x8 out;
-    std::memcpy(out.v, p, sizeof out.v);
-    return out;
-  }
-  static u32x8 broadcast(std::uint32_t x) {
-    return each([x](std::size_t) { return x; });
-  }
-  void store(std::uint32_t* p) const { std::memcpy(p, v, sizeof v); }
-
-  template <class Lane>
-  static u32x8 each(Lane lane) {
-    u32x8 out;
-    for (std::size_t i = 0; i < width; ++i) out.v[i] = lane(i);
-    return out;
-  }
-  friend u32x8 operator&(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] & b.v[i]; });
-  }
-  friend u32x8 operator|(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] | b.v[i]; });
-  }
-  friend u32x8 operator^(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] ^ b.v[i]; });
-  }
-  friend u32x8 operator-(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] - b.v[i]; });
-  }
-  friend u32x8 operator<<(const u32x8& a, int bits) {
-    return each([&](std::size_t i) { return a.v[i] << bits; });
-  }
-  friend u32x8 operator>>(const u32x8& a, int bits) {
-    return each([&](std::size_t i) { return a.v[i] >> bits; });
-  }
-};
+using u32x8 = plain_lanes<std::uint32_t, 8>;
 
 #endif
 
@@ -2564,12 +2567,14 @@ inline u32x8 spread_bit(u32x8 a, int bit) {
   return u32x8::broadcast(0) - ((a >> bit) & u32x8::broadcast(1));
 }
 
+/// All bits under bit `bit`.
+inline u32x8 below(int bit) { return u32x8::broadcast((std::uint32_t{1} << bit) - 1); }
+
 /// One level of the curve undone on one axis: the lower bits of x are turned over where the axis is
 /// in its upper half, and change places with those of the axis where it is not.
 inline void undo_level(u32x8& x, u32x8& axis, int bit) {
-  const u32x8 below = u32x8::broadcast((std::uint32_t{1} << bit) - 1);
-  const u32x8 flip = spread_bit(axis, bit) & below;
-  const u32x8 swap = (x ^ axis) & (flip ^ below);
+  const u32x8 flip = spread_bit(axis, bit) & below(bit);
+  const u32x8 swap = (x ^ axis) & (flip ^ below(bit));
   x = x ^ (flip | swap);
   axis = axis ^ swap;
 }
@@ -2601,7 +2606,7 @@ inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
                                                                u32x8 z,
                                                                int bits) {
   for (int bit = bits - 1; bit > 0; --bit) {
-    x = x ^ (detail::spread_bit(x, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    x = x ^ (detail::spread_bit(x, bit) & detail::below(bit));
     detail::undo_level(x, y, bit);
     detail::undo_level(x, z, bit);
   }
@@ -2609,8 +2614,7 @@ inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
   z = z ^ y;
   u32x8 turned = u32x8::broadcast(0);
   for (int bit = bits - 1; bit > 0; --bit) {
-    turned =
-        turned ^ (detail::spread_bit(z, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    turned = turned ^ (detail::spread_bit(z, bit) & detail::below(bit));
   }
   x = x ^ turned;
   y = y ^ turned;
@@ -4024,7 +4028,7 @@ class neighbours {
  public:
   /// control   asked while the tree is built
   explicit neighbours(const cloud& c, const control& control = {})
-      : points_(c, control), tree_(3, points_, {10}) {}
+      : origin_(c.origin), points_(c, c.origin, control), tree_(3, points_, {10}) {}
   neighbours(const neighbours&) = delete;
   neighbours& operator=(const neighbours&) = delete;
 
@@ -4036,7 +4040,7 @@ class neighbours {
     k = std::min(k, points_.position.size());
     std::vector<std::size_t> index(k);
     std::vector<double> squared(k);
-    const Eigen::Vector3d local = p - points_.origin;
+    const Eigen::Vector3d local = p - origin_;
     const std::size_t n =
         k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
     std::vector<neighbour> found;
@@ -4049,7 +4053,7 @@ class neighbours {
   /// Calls `visit(index)` for each point nearer than `radius`, in no order.
   template <class Visit>
   void for_each_within(const Eigen::Vector3d& p, double radius, Visit&& visit) const {
-    const Eigen::Vector3d local = p - points_.origin;
+    const Eigen::Vector3d local = p - origin_;
     visitor<Visit> inside{radius * radius, points_.source, visit};
     (void)tree_.radiusSearchCustomCallback(local.data(), inside);
   }
@@ -4078,35 +4082,9 @@ class neighbours {
     [[nodiscard]] bool full() const { return true; }
   };
 
-  struct finite_positions {
-    Eigen::Vector3d origin;
-    std::vector<Eigen::Vector3d> position;
-    std::vector<std::size_t> source;
-    control how;
-
-    finite_positions(const cloud& c, const control& h) : origin(c.origin), how(h) {
-      for (std::size_t i = 0; i < c.size(); ++i) {
-        if (!is_finite(c.points[i])) continue;
-        position.push_back(c.points[i].cast<double>());
-        source.push_back(i);
-      }
-    }
-
-    // The interface that nanoflann asks for.
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-      if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
-      return position[i][static_cast<Eigen::Index>(axis)];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
-
-  finite_positions points_;
-  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+  Eigen::Vector3d origin_;
+  detail::finite_positions points_;
+  detail::point_tree tree_;
 };
 
 }  // namespace aib::cloud
@@ -25542,23 +25520,25 @@ inline double distance_to_edges(const Eigen::Vector2d& p,
   return least;
 }
 
-/// Pieces one behind the other, from `first` until they come round.
-inline std::vector<outline_piece> loop_from(std::vector<outline_piece>::const_iterator first,
-                                            std::vector<outline_piece> pieces,
-                                            double tolerance) {
-  std::vector<outline_piece> loop{*first};
+/// Pieces one behind the other until they come round, or none where they do not. Pockets behind
+/// narrow openings have loops of their own: this one begins at the leftmost piece, since the loop
+/// round all reaches farthest.
+inline std::vector<outline_piece> outer_loop(std::vector<outline_piece> pieces, double tolerance) {
   const auto begin = [](const outline_piece& p) { return p.way.at(0).translation; };
-  for (;;) {
+  auto next = std::min_element(pieces.begin(), pieces.end(), [&](const auto& a, const auto& b) {
+    return begin(a).x() < begin(b).x();
+  });
+  std::vector<outline_piece> loop;
+  while (next != pieces.end()) {
+    if (!loop.empty() && begin(*next) == begin(loop.front())) return loop;
+    loop.push_back(*next);
+    if (loop.size() > 1) pieces.erase(next);
     const Eigen::Vector3d end = loop.back().way.at(1).translation;
-    const auto next = std::find_if(pieces.begin(), pieces.end(), [&](const outline_piece& p) {
+    next = std::find_if(pieces.begin(), pieces.end(), [&](const outline_piece& p) {
       return (begin(p) - end).norm() <= tolerance;
     });
-    if (next == pieces.end())
-      throw argument_error("survey::outline: corners too near to each other to find a way round");
-    if (begin(*next) == begin(loop.front())) return loop;
-    loop.push_back(*next);
-    pieces.erase(next);
   }
+  return {};
 }
 
 }  // namespace detail
@@ -25578,14 +25558,9 @@ inline std::vector<outline_piece> outline(const std::vector<Eigen::Vector2d>& co
       if (part.way.length() > rounding && distance >= stand_off - rounding) free.push_back(part);
     }
   }
-  if (free.empty())
+  auto loop = detail::outer_loop(free, 100 * rounding);
+  if (loop.empty())
     throw argument_error("survey::outline: corners too near to each other to find a way round");
-  // Pockets behind narrow openings have loops of their own; that round all reaches farthest.
-  const auto leftmost =
-      std::min_element(free.begin(), free.end(), [](const auto& a, const auto& b) {
-        return a.way.at(0).translation.x() < b.way.at(0).translation.x();
-      });
-  auto loop = detail::loop_from(leftmost, free, 100 * rounding);
   const auto lowest = std::min_element(
       loop.begin(), loop.end(), [](const auto& a, const auto& b) { return a.source < b.source; });
   std::rotate(loop.begin(), lowest, loop.end());

@@ -4,7 +4,7 @@
 
 #include <aib/align/umeyama.hpp>
 #include <aib/cloud/cloud.hpp>
-#include <aib/cloud/positions.hpp>
+#include <aib/cloud/point_tree.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/math/rotation.hpp>
@@ -12,7 +12,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <nanoflann.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -65,35 +64,6 @@ struct icp_result {
 
 namespace detail {
 
-/// Finite positions of a cloud, counted from an origin, and where each stood.
-struct icp_points {
-  std::vector<Eigen::Vector3d> position;
-  std::vector<std::size_t> source;
-  const control& how;
-
-  icp_points(const cloud::cloud& c, const Eigen::Vector3d& origin, const control& h) : how(h) {
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      if (!cloud::is_finite(c.points[i])) continue;
-      position.push_back(c.position(i) - origin);
-      source.push_back(i);
-    }
-    if (position.empty()) {
-      throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
-    }
-  }
-
-  // The interface that nanoflann asks for.
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
-    return position[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 /// Corresponding points, the estimate's as they lie now.
 struct icp_pairs {
   std::vector<Eigen::Vector3d> estimate;
@@ -112,15 +82,20 @@ class icp_solver {
         reference_cloud_(reference),
         estimate_(estimate, reference.origin, options.control),
         reference_(reference, reference.origin, options.control),
-        tree_(3, reference_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+        tree_(3, reference_, {10}) {
+    demand_points(estimate_, estimate);
+    demand_points(reference_, reference);
+  }
 
   [[nodiscard]] icp_result run();
 
  private:
-  using metric = nanoflann::L2_Simple_Adaptor<double, icp_points>;
-  using tree = nanoflann::KDTreeSingleIndexAdaptor<metric, icp_points, 3, std::size_t>;
   static constexpr std::size_t none = ~std::size_t{0};
 
+  static void demand_points(const cloud::detail::finite_positions& finite, const cloud::cloud& c) {
+    if (!finite.position.empty()) return;
+    throw undefined_error(message("align::icp: no finite point in a cloud of ", c.size()));
+  }
   [[nodiscard]] std::vector<std::size_t> nearest(std::span<const Eigen::Vector3d> moved,
                                                  double max_distance) const;
   [[nodiscard]] icp_pairs pairs(const math::sim3& now, double max_distance) const;
@@ -130,9 +105,9 @@ class icp_solver {
 
   const icp_options& options_;
   const cloud::cloud& reference_cloud_;
-  icp_points estimate_;
-  icp_points reference_;
-  tree tree_;
+  cloud::detail::finite_positions estimate_;
+  cloud::detail::finite_positions reference_;
+  cloud::detail::point_tree tree_;
 };
 
 inline std::vector<std::size_t> icp_solver::nearest(std::span<const Eigen::Vector3d> moved,

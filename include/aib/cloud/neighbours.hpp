@@ -3,11 +3,10 @@
 #pragma once
 
 #include <aib/cloud/cloud.hpp>
-#include <aib/cloud/positions.hpp>
+#include <aib/cloud/point_tree.hpp>
 #include <aib/core/executor.hpp>
 
 #include <Eigen/Core>
-#include <nanoflann.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +28,7 @@ class neighbours {
  public:
   /// control   asked while the tree is built
   explicit neighbours(const cloud& c, const control& control = {})
-      : points_(c, control), tree_(3, points_, {10}) {}
+      : origin_(c.origin), points_(c, c.origin, control), tree_(3, points_, {10}) {}
   neighbours(const neighbours&) = delete;
   neighbours& operator=(const neighbours&) = delete;
 
@@ -41,7 +40,7 @@ class neighbours {
     k = std::min(k, points_.position.size());
     std::vector<std::size_t> index(k);
     std::vector<double> squared(k);
-    const Eigen::Vector3d local = p - points_.origin;
+    const Eigen::Vector3d local = p - origin_;
     const std::size_t n =
         k == 0 ? 0 : tree_.knnSearch(local.data(), k, index.data(), squared.data());
     std::vector<neighbour> found;
@@ -54,7 +53,7 @@ class neighbours {
   /// Calls `visit(index)` for each point nearer than `radius`, in no order.
   template <class Visit>
   void for_each_within(const Eigen::Vector3d& p, double radius, Visit&& visit) const {
-    const Eigen::Vector3d local = p - points_.origin;
+    const Eigen::Vector3d local = p - origin_;
     visitor<Visit> inside{radius * radius, points_.source, visit};
     (void)tree_.radiusSearchCustomCallback(local.data(), inside);
   }
@@ -83,35 +82,9 @@ class neighbours {
     [[nodiscard]] bool full() const { return true; }
   };
 
-  struct finite_positions {
-    Eigen::Vector3d origin;
-    std::vector<Eigen::Vector3d> position;
-    std::vector<std::size_t> source;
-    control how;
-
-    finite_positions(const cloud& c, const control& h) : origin(c.origin), how(h) {
-      for (std::size_t i = 0; i < c.size(); ++i) {
-        if (!is_finite(c.points[i])) continue;
-        position.push_back(c.points[i].cast<double>());
-        source.push_back(i);
-      }
-    }
-
-    // The interface that nanoflann asks for.
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return position.size(); }
-    [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-      if (axis == 0 && i % 65536 == 0) demand_go(how);  // where a tree can stop
-      return position[i][static_cast<Eigen::Index>(axis)];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using metric = nanoflann::L2_Simple_Adaptor<double, finite_positions>;
-
-  finite_positions points_;
-  nanoflann::KDTreeSingleIndexAdaptor<metric, finite_positions, 3, std::size_t> tree_;
+  Eigen::Vector3d origin_;
+  detail::finite_positions points_;
+  detail::point_tree tree_;
 };
 
 }  // namespace aib::cloud

@@ -4,10 +4,10 @@
 
 #include <aib/core/isa.hpp>
 #include <aib/core/simd_doubled.hpp>
+#include <aib/core/simd_plain.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #if !defined(AIB_PLAIN) && defined(__SSE2__)
 #include <immintrin.h>
@@ -63,45 +63,7 @@ using u32x8 = doubled_lanes<u32x4, std::uint32_t>;
 
 #else
 
-struct u32x8 {
-  static constexpr std::size_t width = 8;
-  std::uint32_t v[width];
-
-  static u32x8 load(const std::uint32_t* p) {
-    u32x8 out;
-    std::memcpy(out.v, p, sizeof out.v);
-    return out;
-  }
-  static u32x8 broadcast(std::uint32_t x) {
-    return each([x](std::size_t) { return x; });
-  }
-  void store(std::uint32_t* p) const { std::memcpy(p, v, sizeof v); }
-
-  template <class Lane>
-  static u32x8 each(Lane lane) {
-    u32x8 out;
-    for (std::size_t i = 0; i < width; ++i) out.v[i] = lane(i);
-    return out;
-  }
-  friend u32x8 operator&(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] & b.v[i]; });
-  }
-  friend u32x8 operator|(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] | b.v[i]; });
-  }
-  friend u32x8 operator^(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] ^ b.v[i]; });
-  }
-  friend u32x8 operator-(const u32x8& a, const u32x8& b) {
-    return each([&](std::size_t i) { return a.v[i] - b.v[i]; });
-  }
-  friend u32x8 operator<<(const u32x8& a, int bits) {
-    return each([&](std::size_t i) { return a.v[i] << bits; });
-  }
-  friend u32x8 operator>>(const u32x8& a, int bits) {
-    return each([&](std::size_t i) { return a.v[i] >> bits; });
-  }
-};
+using u32x8 = plain_lanes<std::uint32_t, 8>;
 
 #endif
 

@@ -18,12 +18,14 @@ inline u32x8 spread_bit(u32x8 a, int bit) {
   return u32x8::broadcast(0) - ((a >> bit) & u32x8::broadcast(1));
 }
 
+/// All bits under bit `bit`.
+inline u32x8 below(int bit) { return u32x8::broadcast((std::uint32_t{1} << bit) - 1); }
+
 /// One level of the curve undone on one axis: the lower bits of x are turned over where the axis is
 /// in its upper half, and change places with those of the axis where it is not.
 inline void undo_level(u32x8& x, u32x8& axis, int bit) {
-  const u32x8 below = u32x8::broadcast((std::uint32_t{1} << bit) - 1);
-  const u32x8 flip = spread_bit(axis, bit) & below;
-  const u32x8 swap = (x ^ axis) & (flip ^ below);
+  const u32x8 flip = spread_bit(axis, bit) & below(bit);
+  const u32x8 swap = (x ^ axis) & (flip ^ below(bit));
   x = x ^ (flip | swap);
   axis = axis ^ swap;
 }
@@ -55,7 +57,7 @@ inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
                                                                u32x8 z,
                                                                int bits) {
   for (int bit = bits - 1; bit > 0; --bit) {
-    x = x ^ (detail::spread_bit(x, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    x = x ^ (detail::spread_bit(x, bit) & detail::below(bit));
     detail::undo_level(x, y, bit);
     detail::undo_level(x, z, bit);
   }
@@ -63,8 +65,7 @@ inline u32x8 interleave(u32x8 x, u32x8 y, u32x8 z) {
   z = z ^ y;
   u32x8 turned = u32x8::broadcast(0);
   for (int bit = bits - 1; bit > 0; --bit) {
-    turned =
-        turned ^ (detail::spread_bit(z, bit) & u32x8::broadcast((std::uint32_t{1} << bit) - 1));
+    turned = turned ^ (detail::spread_bit(z, bit) & detail::below(bit));
   }
   x = x ^ turned;
   y = y ^ turned;

@@ -140,23 +140,25 @@ inline double distance_to_edges(const Eigen::Vector2d& p,
   return least;
 }
 
-/// Pieces one behind the other, from `first` until they come round.
-inline std::vector<outline_piece> loop_from(std::vector<outline_piece>::const_iterator first,
-                                            std::vector<outline_piece> pieces,
-                                            double tolerance) {
-  std::vector<outline_piece> loop{*first};
+/// Pieces one behind the other until they come round, or none where they do not. Pockets behind
+/// narrow openings have loops of their own: this one begins at the leftmost piece, since the loop
+/// round all reaches farthest.
+inline std::vector<outline_piece> outer_loop(std::vector<outline_piece> pieces, double tolerance) {
   const auto begin = [](const outline_piece& p) { return p.way.at(0).translation; };
-  for (;;) {
+  auto next = std::min_element(pieces.begin(), pieces.end(), [&](const auto& a, const auto& b) {
+    return begin(a).x() < begin(b).x();
+  });
+  std::vector<outline_piece> loop;
+  while (next != pieces.end()) {
+    if (!loop.empty() && begin(*next) == begin(loop.front())) return loop;
+    loop.push_back(*next);
+    if (loop.size() > 1) pieces.erase(next);
     const Eigen::Vector3d end = loop.back().way.at(1).translation;
-    const auto next = std::find_if(pieces.begin(), pieces.end(), [&](const outline_piece& p) {
+    next = std::find_if(pieces.begin(), pieces.end(), [&](const outline_piece& p) {
       return (begin(p) - end).norm() <= tolerance;
     });
-    if (next == pieces.end())
-      throw argument_error("survey::outline: corners too near to each other to find a way round");
-    if (begin(*next) == begin(loop.front())) return loop;
-    loop.push_back(*next);
-    pieces.erase(next);
   }
+  return {};
 }
 
 }  // namespace detail
@@ -176,14 +178,9 @@ inline std::vector<outline_piece> outline(const std::vector<Eigen::Vector2d>& co
       if (part.way.length() > rounding && distance >= stand_off - rounding) free.push_back(part);
     }
   }
-  if (free.empty())
+  auto loop = detail::outer_loop(free, 100 * rounding);
+  if (loop.empty())
     throw argument_error("survey::outline: corners too near to each other to find a way round");
-  // Pockets behind narrow openings have loops of their own; that round all reaches farthest.
-  const auto leftmost =
-      std::min_element(free.begin(), free.end(), [](const auto& a, const auto& b) {
-        return a.way.at(0).translation.x() < b.way.at(0).translation.x();
-      });
-  auto loop = detail::loop_from(leftmost, free, 100 * rounding);
   const auto lowest = std::min_element(
       loop.begin(), loop.end(), [](const auto& a, const auto& b) { return a.source < b.source; });
   std::rotate(loop.begin(), lowest, loop.end());
