@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
-"""Sums up a run of `meson test`: a line per suite, failures and skips in full, a verdict.
+"""Sums up a run of `meson test`: a line per suite, failures and skips in full, a verdict, and
+which tests took longest.
 
 usage: summary.py LOG_FOLDER [--no-skips]
 
@@ -70,6 +71,12 @@ def tail(text, n_lines=60):
     return "\n".join("  " + line for line in cut + lines[-n_lines:])
 
 
+def slowest(tests, n=5):
+    """The tests that took longest, for one line."""
+    by_time = sorted(tests, key=lambda test: -test["duration"])[:n]
+    return ", ".join(f"{test['name'].partition(':')[2]} {test['duration']:.0f} s" for test in by_time)
+
+
 def main(log_folder, *flags):
     log_folder = pathlib.Path(log_folder)
     tests = read_tests(log_folder)
@@ -89,6 +96,8 @@ def main(log_folder, *flags):
     print(f"\n{'suite':<16} passed  failed  skipped")
     for suite, tally in suites.items():
         print(f"{suite:<16} {tally.passed:6}  {tally.failed:6}  {len(tally.skips):7}")
+    if len(tests) > 1:
+        print(f"longest: {slowest(tests)}")
     for skip in dict.fromkeys(total.skips):
         print(f"skipped: {skip}")
     if "--no-skips" in flags:
