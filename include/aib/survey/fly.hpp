@@ -8,8 +8,10 @@
 #include <aib/mesh/distances.hpp>
 #include <aib/mesh/ray_surface.hpp>
 #include <aib/pose/trajectory.hpp>
+#include <aib/survey/clearance.hpp>
 #include <aib/survey/facing.hpp>
 #include <aib/survey/flight_path.hpp>
+#include <aib/survey/frame_scale.hpp>
 #include <aib/survey/lens.hpp>
 
 #include <Eigen/Core>
@@ -19,10 +21,8 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace aib::survey {
@@ -87,100 +87,6 @@ struct flight_plan {
 
 namespace detail {
 
-/// A path measured in frames: how many frame widths, or heights, the image of a wall moves.
-class frame_scale {
- public:
-  explicit frame_scale(const flight_path& path) : path_(path) {
-    const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
-    double sum = 0;
-    for (std::size_t l = 0; l < path.legs.size(); ++l) {
-      for (std::size_t i = 0; i < n_parts; ++i) {
-        parts_.push_back({l, static_cast<double>(i) / n_parts, sum});
-        sum += moved(path.legs[l], i, frame);
-      }
-    }
-    total_ = sum;
-  }
-
-  [[nodiscard]] double total() const { return total_; }
-
-  /// The pose where the image has moved as far.
-  [[nodiscard]] math::rigid3 at(double frames) const {
-    const auto behind = std::upper_bound(parts_.begin() + 1, parts_.end(), frames,
-                                         [](double f, const part& p) { return f < p.begin; });
-    const part& p = *(behind - 1);
-    const double end = behind == parts_.end() ? total_ : behind->begin;
-    const double share = end > p.begin ? (frames - p.begin) / (end - p.begin) : 0;
-    return path_.legs[p.leg].at(p.share + std::clamp(share, 0.0, 1.0) / n_parts);
-  }
-
- private:
-  static constexpr std::size_t n_parts = 16;
-  struct part {
-    std::size_t leg;
-    double share;
-    double begin;
-  };
-
-  double moved(const leg& l, std::size_t i, const wall_frame& frame) const {
-    const auto share = [](double k) { return k / n_parts; };
-    const auto k = static_cast<double>(i);
-    const Eigen::Matrix3d camera_from_world = l.at(share(k + 0.5)).rotation.transpose();
-    const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
-    const double straight = way.norm();
-    // A chord is shorter than its arc.
-    const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
-    const Eigen::Vector3d by = arc * (camera_from_world * way);
-    // What a turn moves out of an image leaves at its edge, where it moves fastest.
-    const double far = path_.stand_off;
-    const double at_side = far + std::pow(frame.width / 2, 2) / far;
-    const double at_top = far + std::pow(frame.height / 2, 2) / far;
-    const Eigen::Vector3d turn = camera_from_world * l.turn / n_parts;
-    // A turn into the way moves the image more. One against it, as round a corner, less; but then
-    // another side comes into sight: the way counts.
-    const double right = std::abs(by.x()) + std::abs(by.z()), down = std::abs(by.y());
-    return std::max(right, std::abs(by.x() + at_side * turn.y())) / frame.width +
-           std::max(down, std::abs(by.y() - at_top * turn.x())) / frame.height;
-  }
-
-  const flight_path& path_;
-  std::vector<part> parts_;
-  double total_ = 0;
-};
-
-/// Keeps away from a mesh.
-class clearance {
- public:
-  clearance(const mesh::surface_index& surface, double least) : surface_(surface), least_(least) {}
-
-  struct nearest {
-    Eigen::Vector3d point;
-    double distance;
-  };
-  [[nodiscard]] nearest nearest_to(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d in_tree = p - surface_.origin();
-    const Eigen::Vector3f coarse = in_tree.cast<float>();
-    const auto found = surface_.tree().nearest(coarse, 0);
-    const auto on = search::nearest_on_triangle(in_tree, surface_.tree().triangle(found.place));
-    return {on.position + surface_.origin(), (on.position - in_tree).norm()};
-  }
-
-  /// The place nearby that is far enough from everything; nothing where there is none.
-  [[nodiscard]] std::optional<Eigen::Vector3d> pushed(Eigen::Vector3d p) const {
-    for (int round = 0; round < 30; ++round) {
-      const nearest near = nearest_to(p);
-      if (near.distance >= least_) return p;
-      if (!(near.distance > 1e-9)) return std::nullopt;
-      p += (1.02 * least_ - near.distance) / near.distance * (p - near.point);
-    }
-    return std::nullopt;
-  }
-
- private:
-  const mesh::surface_index& surface_;
-  double least_;
-};
-
 /// `to`, or on the way to it as far as an angle from `from`.
 inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
                                       const Eigen::Matrix3d& to,
@@ -217,8 +123,8 @@ inline void place_frames(flight_plan& plan, const flight_path& path, const fly_o
   }
 }
 
-inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
-  const clearance keep(space.distance, options.min_distance);
+/// Moves the poses that are too near to the mesh.
+inline void push_away(flight_plan& plan, const fly_options& options, const clearance& keep) {
   auto& poses = plan.trajectory.world_from_camera;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Eigen::Vector3d& at = poses[i].translation;
@@ -235,13 +141,16 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
     plan.largest_push = std::max(plan.largest_push, (*there - at).norm());
     at = *there;
   }
+}
+
+/// How near frames and the ways between them come to the mesh.
+inline void measure_distance(flight_plan& plan, double tolerated, const clearance& keep) {
+  const auto& poses = plan.trajectory.world_from_camera;
   plan.min_distance = HUGE_VAL;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d from = poses[i].translation;
-    const Eigen::Vector3d way = i + 1 < poses.size()
-                                    ? Eigen::Vector3d(poses[i + 1].translation - from)
-                                    : Eigen::Vector3d::Zero();
-    const double n = std::clamp(std::ceil(2 * way.norm() / options.min_distance), 1.0, 1000.0);
+    const Eigen::Vector3d way = poses[std::min(i + 1, poses.size() - 1)].translation - from;
+    const double n = std::clamp(std::ceil(2 * way.norm() / tolerated), 1.0, 1000.0);
     for (double k = 0; k < n; ++k) {
       const double distance = keep.nearest_to(from + k / n * way).distance;
       if (distance >= *plan.min_distance) continue;
@@ -249,6 +158,12 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
       plan.min_distance_frame = i;
     }
   }
+}
+
+inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
+  const clearance keep(space.distance, options.min_distance);
+  push_away(plan, options, keep);
+  measure_distance(plan, options.min_distance, keep);
   if (options.clearance == clearance_rule::refuse && *plan.min_distance < options.min_distance) {
     throw undefined_error(message("survey::fly: the way from ",
                                   plan.trajectory.names[plan.min_distance_frame],
