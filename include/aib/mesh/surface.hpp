@@ -36,4 +36,13 @@ namespace aib::mesh {
   return total;
 }
 
+/// A point of a triangle, uniform by area for two numbers uniform in [0, 1].
+/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
+[[nodiscard]] inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner,
+                                              double u,
+                                              double v) {
+  const double root = std::sqrt(u);
+  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
+}
+
 }  // namespace aib::mesh

@@ -112,13 +112,6 @@ inline double uniform(std::uint64_t seed, std::uint64_t counter) {
   return static_cast<double>(random_bits(seed, counter) >> 11) * 0x1p-53;
 }
 
-/// A point of a triangle for two uniform numbers.
-/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
-inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner, double u, double v) {
-  const double root = std::sqrt(u);
-  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
-}
-
 inline Eigen::Vector3f unit_normal(const std::array<Eigen::Vector3d, 3>& corner) {
   const Eigen::Vector3d ab = corner[1] - corner[0];
   const Eigen::Vector3d ac = corner[2] - corner[0];
@@ -136,10 +129,6 @@ inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
   return points;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Points at random, uniform by area.
 inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_options& options) {
   const double area = aib::mesh::area(surface);
@@ -151,22 +140,22 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 64, options.threads, options.control,
-                 [&](const chunk& c) {
-                   for (std::size_t t = c.begin; t < c.end; ++t) {
-                     if (starts[t] == starts[t + 1]) continue;
-                     demand_go(options.control);  // a triangle may have a million
-                     const auto corner = aib::mesh::corners(surface, t);
-                     const Eigen::Vector3f normal = unit_normal(corner);
-                     for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-                       const Eigen::Vector3d p = point_in(corner, uniform(options.seed, 2 * i + 1),
+  for_each_chunk(
+      surface.triangles.size(), 64, options.threads, options.control, [&](const chunk& c) {
+        for (std::size_t t = c.begin; t < c.end; ++t) {
+          if (starts[t] == starts[t + 1]) continue;
+          demand_go(options.control);  // a triangle may have a million
+          const auto corner = aib::mesh::corners(surface, t);
+          const Eigen::Vector3f normal = unit_normal(corner);
+          for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+            const Eigen::Vector3d p = aib::mesh::point_in(corner, uniform(options.seed, 2 * i + 1),
                                                           uniform(options.seed, 2 * i + 2));
-                       points.points[i] = p.cast<float>();
-                       points.normals[i] = normal;
-                       if (!points.labels.empty()) points.labels[i] = surface.labels[t];
-                     }
-                   }
-                 });
+            points.points[i] = p.cast<float>();
+            points.normals[i] = normal;
+            if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+          }
+        }
+      });
   const double density = static_cast<double>(n) / area;
   return {std::move(points), area, density, sampling_floor(density)};
 }

@@ -26,6 +26,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace aib::survey {
@@ -81,13 +82,16 @@ inline double flight_report::seen_within(double incidence) const {
 
 namespace detail {
 
+struct covered_area {
+  std::vector<seen_sample> samples;
+  double area;
+};
+
 /// Points at random, evenly by area, on the faces with some labels.
-inline std::vector<seen_sample> samples_of(const mesh::mesh& m,
-                                           const measure_options& options,
-                                           double& area) {
+inline covered_area samples_of(const mesh::mesh& m, const measure_options& options) {
   const bool labelled = m.labels.size() == m.triangles.size();
   std::vector<double> until;  // area up to and with each face
-  area = 0;
+  double area = 0;
   for (std::size_t t = 0; t < m.triangles.size(); ++t) {
     const std::uint32_t label = labelled ? m.labels[t] : 0;
     const bool counts = options.labels.empty() || (labelled && is_among(label, options.labels));
@@ -96,25 +100,27 @@ inline std::vector<seen_sample> samples_of(const mesh::mesh& m,
   if (!(area > 0))
     throw undefined_error("survey::measure: no faces with these labels that have an area");
   random_engine random(options.seed);
-  std::vector<seen_sample> samples;
+  covered_area covered{{}, area};
   for (std::size_t i = 0; i < options.samples; ++i) {
     const auto face = std::upper_bound(until.begin(), until.end(), random.uniform() * area);
-    const auto t = static_cast<std::size_t>(face - until.begin());
-    const auto [a, b, c] = mesh::corners(m, t);
-    const double root = std::sqrt(random.uniform()), along = random.uniform();
-    const Eigen::Vector3d ab = b - a, ac = c - a;
-    samples.push_back(
-        {m.origin + a + root * ((1 - along) * ab + along * ac), ab.cross(ac).normalized()});
+    const auto corner = mesh::corners(m, static_cast<std::size_t>(face - until.begin()));
+    const double u = random.uniform(), v = random.uniform();
+    const Eigen::Vector3d ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+    covered.samples.push_back({m.origin + mesh::point_in(corner, u, v), ab.cross(ac).normalized()});
   }
-  return samples;
+  return covered;
 }
 
+struct seen_points {
+  std::vector<Eigen::Vector3d> position;
+  std::vector<float> gsd;  ///< none where the camera has no focal length
+};
+
 /// Points in the middle of the cells of a grid over an image, where they lie on the surface.
-inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
-                                              const mesh::ray_surface& surface,
-                                              const measure_options& options,
-                                              std::vector<float>& gsd) {
-  std::vector<Eigen::Vector3d> points;
+inline seen_points points_of(const math::view& v,
+                             const mesh::ray_surface& surface,
+                             const measure_options& options) {
+  seen_points points;
   const auto part = [](std::size_t i, std::size_t n, std::uint64_t pixels) {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(n) * static_cast<double>(pixels);
   };
@@ -127,9 +133,9 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
       const Eigen::Vector3d& from = v.world_from_camera.translation;
       const auto hit = surface.first_hit(from, direction, options.max_distance);
       if (!hit || !is_among(surface.label_at(hit->place), options.labels)) continue;
-      points.push_back(from + hit->distance * direction);
+      points.position.push_back(from + hit->distance * direction);
       if (v.camera.has_focal())
-        gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
+        points.gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
     }
   }
   return points;
@@ -157,6 +163,60 @@ inline bool sees(const math::view& v,
          surface.sees(from, p, options.tolerance * distance);
 }
 
+struct frames_report {
+  std::vector<double> overlap;
+  std::vector<float> gsd;
+  std::vector<double> off_normal;
+};
+
+inline frames_report measure_frames(std::span<const math::view> views,
+                                    const mesh::ray_surface& surface,
+                                    const measure_options& options) {
+  std::vector<std::vector<float>> gsd(views.size());
+  std::vector<double> overlap(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> off(views.size());
+  for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      off[i] = off_normal(views[i], surface, options);
+      seen_points points = points_of(views[i], surface, options);
+      gsd[i] = std::move(points.gsd);
+      if (i + 1 == views.size() || points.position.empty()) continue;
+      const auto seen = std::count_if(
+          points.position.begin(), points.position.end(),
+          [&](const Eigen::Vector3d& p) { return sees(views[i + 1], p, surface, options); });
+      overlap[i] = static_cast<double>(seen) / static_cast<double>(points.position.size());
+    }
+  });
+  frames_report report{std::move(overlap), {}, std::move(off)};
+  for (const std::vector<float>& of_view : gsd)
+    report.gsd.insert(report.gsd.end(), of_view.begin(), of_view.end());
+  return report;
+}
+
+/// The samples with what the views see of them.
+inline std::vector<seen_sample> seen_from(std::span<const math::view> views,
+                                          std::vector<seen_sample> samples,
+                                          const mesh::ray_surface& surface,
+                                          const measure_options& options) {
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  for_each_chunk(samples.size(), 64, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      seen_sample& s = samples[i];
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!cones[k].may_contain(s.position)) continue;
+        const Eigen::Vector3d way = views[k].world_from_camera.translation - s.position;
+        const double incidence =
+            std::atan2(way.cross(s.normal).norm(), std::abs(way.dot(s.normal)));
+        if (incidence > options.max_incidence) continue;
+        if (!sees(views[k], s.position, surface, options)) continue;
+        ++s.n_views;
+        s.incidence = std::min(s.incidence, incidence);
+      }
+    }
+  });
+  return samples;
+}
+
 }  // namespace detail
 
 inline namespace AIB_ISA {
@@ -177,44 +237,14 @@ inline namespace AIB_ISA {
   if (views.empty()) throw undefined_error("survey::measure: no view");
   if (options.samples == 0 || options.columns == 0 || options.rows == 0)
     throw argument_error("survey::measure: a sample and a ray or more expected");
-  flight_report report;
-  report.n_rays = views.size() * options.columns * options.rows;
-  report.samples = detail::samples_of(m, options, report.area);
-
-  std::vector<std::vector<float>> gsd(views.size());
-  report.overlap.assign(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
-  report.off_normal.resize(views.size());
-  for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      report.off_normal[i] = detail::off_normal(views[i], surface, options);
-      const auto points = detail::points_of(views[i], surface, options, gsd[i]);
-      if (i + 1 == views.size() || points.empty()) continue;
-      const auto seen = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {
-        return detail::sees(views[i + 1], p, surface, options);
-      });
-      report.overlap[i] = static_cast<double>(seen) / static_cast<double>(points.size());
-    }
-  });
-  for (const std::vector<float>& of_view : gsd)
-    report.gsd.insert(report.gsd.end(), of_view.begin(), of_view.end());
-
-  const std::vector<math::view_cone> cones(views.begin(), views.end());
-  for_each_chunk(report.samples.size(), 64, options.threads, options.control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      seen_sample& s = report.samples[i];
-      for (std::size_t k = 0; k < views.size(); ++k) {
-        if (!cones[k].may_contain(s.position)) continue;
-        const Eigen::Vector3d way = views[k].world_from_camera.translation - s.position;
-        const double incidence =
-            std::atan2(way.cross(s.normal).norm(), std::abs(way.dot(s.normal)));
-        if (incidence > options.max_incidence) continue;
-        if (!detail::sees(views[k], s.position, surface, options)) continue;
-        ++s.n_views;
-        s.incidence = std::min(s.incidence, incidence);
-      }
-    }
-  });
-  return report;
+  auto [samples, area] = detail::samples_of(m, options);
+  auto frames = detail::measure_frames(views, surface, options);
+  return {.overlap = std::move(frames.overlap),
+          .gsd = std::move(frames.gsd),
+          .n_rays = views.size() * options.columns * options.rows,
+          .off_normal = std::move(frames.off_normal),
+          .area = area,
+          .samples = detail::seen_from(views, std::move(samples), surface, options)};
 }
 
 }  // namespace AIB_ISA
