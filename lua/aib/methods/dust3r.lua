@@ -4,16 +4,17 @@
 --- The optimisers of DUSt3R's family (DUSt3R, MASt3R, MonST3R): frame_%04d.npy, conf_%d.npy, pred_traj.txt with lines
 --- t x y z qw qx qy qz (world_from_camera, w first, unlike TUM) and pred_intrinsics.txt with nine numbers a line.
 local aib = require "aib"
+local failure = require "aib.failure"
 local kit = require "aib.methods.kit"
 
 local function frames(folder) return kit.numbered(folder, "^frame_(%d+)%.npy$") end
 
-local function cameras_of(folder, names, map)
-  local cameras = {}
-  for i, k in ipairs(kit.number_lines(folder .. "/pred_intrinsics.txt")) do
-    cameras[names[i] or ""] = kit.pinhole(k, map.width, map.height)
+local function cameras_of(path, names, map)
+  local matrices, cameras = kit.number_lines(path, 9), {}
+  if #matrices ~= #names then
+    failure.raise("format", ("%s: a line a frame expected, found %d of %d"):format(path, #matrices, #names))
   end
-  cameras[""] = nil
+  for i, k in ipairs(matrices) do cameras[names[i]] = kit.pinhole(k, map.width, map.height) end
   return cameras
 end
 
@@ -30,7 +31,7 @@ return {
       poses = folder .. "/pred_traj.txt", how = { format = "tum", quaternion = "wxyz" },
     }, options)
     if kit.exists(folder, "pred_intrinsics.txt") then
-      batch.cameras = cameras_of(folder, batch.names, batch.depth(1))
+      batch.cameras = cameras_of(folder .. "/pred_intrinsics.txt", batch.names, batch.depth(1))
     end
     return batch
   end,

@@ -151,13 +151,26 @@ function M.sized(cameras, map)
   return sized
 end
 
---- Numbers of each line of a text.
-function M.number_lines(path)
-  local rows = {}
-  for line in aib.system.read_text(path):gmatch "[^\r\n]+" do
-    local row = {}
-    for word in line:gmatch "%S+" do row[#row + 1] = tonumber(word) end
-    if #row > 0 then rows[#rows + 1] = row end
+local function finite(word)
+  local x = tonumber(word)
+  return x and math.abs(x) < math.huge and x or nil
+end
+
+--- The lines of a text that are not empty, as rows of n numbers.
+function M.number_lines(path, n)
+  local rows, number = {}, 0
+  for line in aib.system.read_text(path):gmatch "([^\n]*)\n?" do
+    local row, n_words = {}, 0
+    number = number + 1
+    for word in line:gmatch "%S+" do
+      n_words, row[#row + 1] = n_words + 1, finite(word)
+    end
+    if n_words > 0 then
+      if n_words ~= n or #row ~= n then
+        failure.raise("format", ("%s:%d: %d numbers expected, found '%s'"):format(path, number, n, line))
+      end
+      rows[#rows + 1] = row
+    end
   end
   return rows
 end
