@@ -27,23 +27,19 @@ namespace aib::io {
 inline cloud::cloud cloud_of_array(const array& a, const std::filesystem::path& path) {
   if (a.shape.size() < 2 || a.shape.back() != 3)
     throw format_error(path, message("an array of N x 3 expected, found ", text_of_shape(a.shape)));
-  cloud::cloud result;
+  float_positions positions;
   const std::size_t n = a.size() / 3;
   if (a.type == dtype::f4 || a.type == dtype::f2) {
     const std::vector<float> values = a.values<float>();
     for (std::size_t i = 0; i < n; ++i)
-      result.points.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+      positions.points.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
   } else {
-    std::vector<Eigen::Vector3d> positions;
-    for (std::size_t i = 0; i < n; ++i)
-      positions.emplace_back(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
-    auto floats = to_floats(positions);
-    result.origin = floats.origin;
-    result.points = std::move(floats.points);
+    std::vector<Eigen::Vector3d> exact;
+    for (std::size_t i = 0; i < n; ++i) exact.emplace_back(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
+    positions = to_floats(exact);
   }
-  if (result.empty()) result.warnings.push_back("no points");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  cloud::cloud result;
+  set_positions(result, std::move(positions));
   return result;
 }
 

@@ -65,8 +65,11 @@ inline las_header read_las_header(const input_file& file) {
         "`pdal translate in.laz out.las`");
   header.format = u8(104);
   header.record_bytes = load<std::uint16_t>(&bytes[105]);
-  header.n_points = load<std::uint32_t>(&bytes[107]);
-  if (u8(25) >= 4 && bytes.size() >= 255) header.n_points = load<std::uint64_t>(&bytes[247]);
+  const std::uint64_t old_count = load<std::uint32_t>(&bytes[107]);
+  header.n_points =
+      u8(25) >= 4 && bytes.size() >= 255 ? load<std::uint64_t>(&bytes[247]) : old_count;
+  if (old_count != 0 && old_count != header.n_points)
+    refuse(message("one number of points expected, found ", old_count, " and ", header.n_points));
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     header.scale[k] = load<double>(&bytes[131 + 8 * axis]);
@@ -76,8 +79,8 @@ inline las_header read_las_header(const input_file& file) {
   if (header.record_bytes < las_record_bytes[header.format])
     refuse(message("records of ", las_record_bytes[header.format], " bytes expected, found ",
                    header.record_bytes));
-  if (!header.scale.allFinite() || !header.offset.allFinite())
-    refuse("scale or offset is not finite");
+  if (!header.scale.allFinite() || !header.offset.allFinite() || !(header.scale.array() != 0).all())
+    refuse("scale or offset is not finite, or a scale is 0");
   if (header.points_at > file.size() ||
       header.n_points > (file.size() - header.points_at) / header.record_bytes)
     refuse(message(header.n_points, " records of ", header.record_bytes, " bytes from byte ",
@@ -115,10 +118,7 @@ inline cloud::cloud read_las(const std::filesystem::path& path) {
     result.colors.push_back({static_cast<std::uint8_t>(c[0] / unit),
                              static_cast<std::uint8_t>(c[1] / unit),
                              static_cast<std::uint8_t>(c[2] / unit)});
-  auto floats = to_floats(positions);
-  result.origin = floats.origin;
-  result.points = std::move(floats.points);
-  if (result.empty()) result.warnings.push_back("no points");
+  set_positions(result, to_floats(positions));
   return result;
 }
 

@@ -111,7 +111,7 @@ class obj_reader {
                           ") expected, found \"", word.substr(0, 40), "\""));
     }
     const std::int64_t vertex = *index > 0 ? *index - 1 : n + *index;
-    if (static_cast<std::size_t>(vertex) > highest_) {
+    if (highest_line_ == 0 || static_cast<std::size_t>(vertex) > highest_) {
       highest_ = static_cast<std::size_t>(vertex);
       highest_line_ = lines_.number();
     }
@@ -119,15 +119,10 @@ class obj_reader {
   }
 
   mesh::mesh finish() {
-    auto floats = to_floats(vertices_);
-    result_.origin = floats.origin;
-    result_.vertices = std::move(floats.points);
     if (n_dropped_ > 0)
       result_.warnings.push_back(
           message(n_dropped_, " faces of less than 3 vertices were dropped"));
-    if (result_.triangles.empty()) result_.warnings.push_back("no triangles");
-    if (auto warning = non_finite_warning(result_.vertices, "vertices"))
-      result_.warnings.push_back(std::move(*warning));
+    set_vertices(result_, to_floats(vertices_));
     return std::move(result_);
   }
 

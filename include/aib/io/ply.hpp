@@ -35,7 +35,8 @@ namespace aib::io {
 enum class splat_rule { refuse, centres };
 
 /// Reads the vertices of a PLY file: ascii and binary of both byte orders, properties in any order,
-/// lists anywhere, other elements before or behind. Faces are passed over.
+/// lists anywhere, other elements before or behind. Faces are passed over. Of elements or
+/// properties of the same name the first counts.
 ///
 /// x y z       required; other types than binary float are kept as double, from a natural origin
 /// nx ny nz    normals; all zero (as pi3 writes them) means none
@@ -64,11 +65,7 @@ template <class T>
 std::uint8_t color_byte(double value) {
   if (std::is_floating_point_v<T>) value *= 255;
   if (std::is_same_v<T, std::uint16_t>) value /= 257;
-  return value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0) + 0.5) : std::uint8_t{0};
-}
-
-inline std::uint32_t label_of(double value) {
-  return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  return channel_of(value + 0.5);
 }
 
 /// The scalar property of a name.

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <aib/cloud/cloud.hpp>
+#include <aib/cloud/origin.hpp>
 #include <aib/core/message.hpp>
+#include <aib/mesh/mesh.hpp>
 
 #include <Eigen/Core>
 
@@ -11,11 +13,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace aib::io {
@@ -26,18 +28,11 @@ struct float_positions {
   std::vector<Eigen::Vector3f> points = {};
 };
 
-/// Double positions as floats from the natural origin of their finite ones.
+/// Double positions as floats, see cloud::origin_finder.
 [[nodiscard]] inline float_positions to_floats(std::span<const Eigen::Vector3d> positions) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinite);
-  Eigen::Vector3d high = -low;
-  for (const Eigen::Vector3d& p : positions) {
-    if (!p.allFinite()) continue;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  float_positions result;
-  if (low[0] <= high[0]) result.origin = cloud::natural_origin(low, high);
+  cloud::origin_finder origin(positions.size());
+  for (const Eigen::Vector3d& p : positions) origin.add(p);
+  float_positions result{.origin = origin.result()};
   result.points.reserve(positions.size());
   for (const Eigen::Vector3d& p : positions)
     result.points.emplace_back((p - result.origin).cast<float>());
@@ -63,6 +58,34 @@ struct float_positions {
   const std::size_t n = count_non_finite(points);
   if (n == 0) return std::nullopt;
   return message(n, " of ", points.size(), " ", name, " are not finite");
+}
+
+/// Gives a cloud the positions and the warnings that its reader owes about them.
+inline void set_positions(cloud::cloud& cloud, float_positions positions) {
+  cloud.origin = positions.origin;
+  cloud.points = std::move(positions.points);
+  if (cloud.empty()) cloud.warnings.push_back("no points");
+  if (auto warning = non_finite_warning(cloud.points, "points"))
+    cloud.warnings.push_back(std::move(*warning));
+}
+
+/// Gives a mesh, which has its triangles, its vertices and the warnings that its reader owes.
+inline void set_vertices(mesh::mesh& mesh, float_positions vertices) {
+  mesh.origin = vertices.origin;
+  mesh.vertices = std::move(vertices.points);
+  if (mesh.triangles.empty()) mesh.warnings.push_back("no triangles");
+  if (auto warning = non_finite_warning(mesh.vertices, "vertices"))
+    mesh.warnings.push_back(std::move(*warning));
+}
+
+/// The label that a number stands for: 0 where it is none.
+[[nodiscard]] inline std::uint32_t label_of(double number) {
+  return number >= 0 && number < 4294967296.0 ? static_cast<std::uint32_t>(number) : 0;
+}
+
+/// The channel of a colour, a number of 0 to 255; what is beyond, or NaN, becomes its nearest end.
+[[nodiscard]] inline std::uint8_t channel_of(double number) {
+  return number > 0 ? static_cast<std::uint8_t>(std::min(number, 255.0)) : std::uint8_t{0};
 }
 
 }  // namespace aib::io

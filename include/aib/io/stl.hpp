@@ -37,7 +37,7 @@ mesh::mesh read_stl(const std::filesystem::path& path);
 
 namespace detail {
 
-/// Numbers equal corners alike: vertices in the order of their first use.
+/// Numbers equal corners alike: vertices in the order of their first use. At most 2^32 corners.
 inline mesh::mesh weld(const std::vector<Eigen::Vector3f>& corners) {
   std::vector<std::uint32_t> order(corners.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -56,17 +56,19 @@ inline mesh::mesh weld(const std::vector<Eigen::Vector3f>& corners) {
     first[order[i]] = same ? first[order[i - 1]] : order[i];
   }
   mesh::mesh result;
+  float_positions vertices;
   std::vector<std::uint32_t> number(corners.size());
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     if (first[i] == i) {
-      number[i] = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.push_back(corners[i]);
+      number[i] = static_cast<std::uint32_t>(vertices.points.size());
+      vertices.points.push_back(corners[i]);
     } else {
       number[i] = number[first[i]];
     }
   }
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
     result.triangles.push_back({number[i], number[i + 1], number[i + 2]});
+  set_vertices(result, std::move(vertices));
   return result;
 }
 
@@ -121,16 +123,16 @@ inline std::vector<Eigen::Vector3f> read_ascii_stl(const std::filesystem::path& 
 
 inline mesh::mesh read_stl(const std::filesystem::path& path) {
   const input_file file(path);
+  constexpr std::uint64_t most = (std::uint64_t{1} << 32) / 3;  // corners have numbers of 32 bits
+  if (file.size() / 50 > most)
+    throw format_error(
+        path, message("stl: at most ", most, " triangles of 50 bytes expected, found ", file.size(),
+                      " bytes"));
   std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 84)), '\0');
   file.read_at(0, begin.data(), begin.size());
   const bool is_ascii = !detail::is_binary_stl(begin, file.size()) &&
                         (begin.starts_with("solid") || begin.starts_with("SOLID"));
-  mesh::mesh result =
-      detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));
-  if (result.triangles.empty()) result.warnings.push_back("no triangles");
-  if (auto warning = non_finite_warning(result.vertices, "vertices"))
-    result.warnings.push_back(std::move(*warning));
-  return result;
+  return detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));
 }
 
 }  // namespace aib::io

@@ -176,7 +176,7 @@ inline cloud::cloud read_xyz(const std::filesystem::path& path) {
   const detail::xyz_table table(path);
   cloud::cloud result;
   if (table.rows() == 0) {
-    result.warnings.push_back("no points");
+    set_positions(result, {});
     return result;
   }
   const auto columns = detail::find_columns(table, path);
@@ -188,18 +188,13 @@ inline cloud::cloud read_xyz(const std::filesystem::path& path) {
     positions[i] = triple(columns.position);
     if (columns.normal) result.normals.push_back(triple(*columns.normal).cast<float>());
     if (columns.color) {
-      const Eigen::Vector3d c = triple(*columns.color).cwiseMax(0).cwiseMin(255);
-      result.colors.push_back({static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]),
-                               static_cast<std::uint8_t>(c[2])});
+      const Eigen::Vector3d c = triple(*columns.color);
+      result.colors.push_back({channel_of(c[0]), channel_of(c[1]), channel_of(c[2])});
     }
   }
-  auto floats = to_floats(positions);
-  result.origin = floats.origin;
-  result.points = std::move(floats.points);
   if (columns.has_unknown)
     result.warnings.push_back("columns that are neither colours nor normals were passed over");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  set_positions(result, to_floats(positions));
   return result;
 }
 
