@@ -30,9 +30,11 @@
 namespace aib::io {
 
 /// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
-/// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
+/// normal_x normal_y normal_z, rgb or rgba (packed), label; of fields of the same name the first.
+/// The viewpoint is not applied.
 ///
-/// Throws format_error where the file is damaged or has more points than the limits.
+/// Throws format_error where the file is damaged, WIDTH x HEIGHT are not POINTS, or it has more
+/// points than the limits.
 /// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
 cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits = {});
 
@@ -78,7 +80,7 @@ class pcd_header_parser {
       if (key == "COUNT") each([](pcd_field& f, std::size_t v) { f.count = v; });
       if (key == "TYPE") parse_types();
       if (key == "WIDTH") width_ = number(1);
-      if (key == "HEIGHT") height_ = number(1);
+      if (key == "HEIGHT") height_ = std::max<std::uint64_t>(1, number(1));
       if (key == "POINTS") points_ = number(1);
       if (key == "VIEWPOINT") parse_viewpoint();
       if (key == "DATA") return finish();
@@ -87,6 +89,8 @@ class pcd_header_parser {
   }
 
  private:
+  static constexpr std::uint64_t most = std::uint64_t{1} << 40;
+
   void parse_names() {
     for (std::size_t i = 1; i < words_.size(); ++i)
       header_.fields.push_back({std::string(words_[i])});
@@ -118,15 +122,27 @@ class pcd_header_parser {
 
   std::uint64_t number(std::size_t i) const {
     const auto value = i < words_.size() ? io::parse<std::uint64_t>(words_[i]) : std::nullopt;
-    if (!value || *value > std::uint64_t{1} << 40)
+    if (!value || *value > most)
       lines_.fail(message("pcd: a whole number expected behind ", words_[0]));
     return *value;
+  }
+
+  std::uint64_t count() const {
+    if (!width_ && !points_) lines_.fail("pcd: WIDTH or POINTS expected");
+    if (width_.value_or(0) == 0) return points_.value_or(0);
+    if (*width_ > most / height_)
+      lines_.fail(
+          message("pcd: ", *width_, " x ", height_, " points, at most ", most, " expected"));
+    const std::uint64_t n = *width_ * height_;
+    if (points_ && *points_ != n)
+      lines_.fail(message("pcd: POINTS of WIDTH x HEIGHT = ", n, " expected, found ", *points_));
+    return n;
   }
 
   pcd_header finish() {
     if (words_.size() != 2) lines_.fail("pcd: DATA ascii, binary or binary_compressed expected");
     header_.data = words_[1];
-    header_.n = points_ ? *points_ : width_ * height_;
+    header_.n = count();
     std::size_t offset = 0;
     for (pcd_field& f : header_.fields) {
       const bool known = f.bytes == 1 || f.bytes == 2 || f.bytes == 4 || f.bytes == 8;
@@ -149,8 +165,8 @@ class pcd_header_parser {
   line_reader lines_;
   std::vector<std::string_view> words_;
   pcd_header header_;
-  std::uint64_t width_ = 0, height_ = 1;
-  std::optional<std::uint64_t> points_;
+  std::optional<std::uint64_t> width_, points_;
+  std::uint64_t height_ = 1;
 };
 
 /// Expands LibLZF; false where the result has not exactly `to.size()` bytes.
@@ -196,14 +212,27 @@ inline double pcd_number(const pcd_field& field, const char* at) {
   }
 }
 
-/// Numbers of the wanted fields, point by point.
+/// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
+inline cloud::color pcd_color(const pcd_field& field, double value) {
+  const bool is_whole = value > -2147483649.0 && value < 4294967296.0;
+  const auto bits = field.type == 'F' ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+                    : is_whole        ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value))
+                                      : 0;
+  return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
+          static_cast<std::uint8_t>(bits)};
+}
+
+/// The same from a binary field. As a number, colours that are the bits of a NaN would be changed.
+inline cloud::color pcd_color(const pcd_field& field, const char* at) {
+  if (field.bytes != 4) return pcd_color(field, pcd_number(field, at));
+  return {load<std::uint8_t>(at + 2), load<std::uint8_t>(at + 1), load<std::uint8_t>(at)};
+}
+
+/// The wanted fields, point by point.
 class pcd_points {
  public:
   pcd_points(const pcd_header& header, std::string_view bytes, const std::filesystem::path& path)
-      : header_(header),
-        path_(path),
-        color_(header.find("rgb") ? header.find("rgb") : header.find("rgba")),
-        label_(header.find("label")) {
+      : header_(header), path_(path) {
     if (header.data == "ascii") {
       read_ascii(bytes);
     } else if (header.data == "binary") {
@@ -216,14 +245,9 @@ class pcd_points {
   }
 
   cloud::cloud finish() {
-    auto floats = to_floats(positions_);
-    result_.origin = floats.origin;
-    result_.points = std::move(floats.points);
     if (header_.has_viewpoint)
       result_.warnings.push_back("the viewpoint in the header was not applied");
-    if (result_.empty()) result_.warnings.push_back("no points");
-    if (auto warning = non_finite_warning(result_.points, "points"))
-      result_.warnings.push_back(std::move(*warning));
+    set_positions(result_, to_floats(positions_));
     return std::move(result_);
   }
 
@@ -235,28 +259,41 @@ class pcd_points {
   void read_ascii(std::string_view text) {
     line_reader lines(text, path_);
     for (std::size_t i = 0; i < header_.lines; ++i) lines.next();
+    std::vector<double> row(header_.fields.size());
     for (std::uint64_t i = 0; i < header_.n; ++i) {
       if (!lines.next_content())
         lines.fail(message("pcd: ", header_.n, " points expected, found ", i));
-      std::string_view rest = lines.line();
-      add([&](const pcd_field& f, std::size_t) {
+      read_line(lines, row);
+      add([&](const pcd_field& f) { return row[index(f)]; },
+          [&](const pcd_field& f) { return pcd_color(f, row[index(f)]); });
+    }
+  }
+
+  [[nodiscard]] std::size_t index(const pcd_field& field) const {
+    return static_cast<std::size_t>(&field - header_.fields.data());
+  }
+
+  /// The first number of each field.
+  void read_line(const line_reader& lines, std::vector<double>& row) const {
+    std::string_view rest = lines.line();
+    for (const pcd_field& f : header_.fields) {
+      for (std::size_t k = 0; k < f.count; ++k) {
         const auto number = take_number(rest);
         if (!number) lines.fail(message("pcd: a number expected for ", f.name));
-        return *number;
-      });
+        if (k == 0) row[index(f)] = *number;
+      }
     }
+    if (!trim(rest).empty())
+      lines.fail(
+          message("pcd: the end of the line expected, found '", trim(rest).substr(0, 40), "'"));
   }
 
   void read_binary(std::string_view bytes, std::size_t row) {
     if (header_.n > bytes.size() / row)
       fail(message(header_.n, " points of ", row, " bytes expected, the file has ", bytes.size(),
                    " bytes for them"));
-    for (std::uint64_t i = 0; i < header_.n; ++i) {
-      const char* at = bytes.data() + i * row;
-      add([&](const pcd_field& f, std::size_t k) {
-        return pcd_number(f, at + f.offset + k * f.bytes);
-      });
-    }
+    for (std::uint64_t i = 0; i < header_.n; ++i)
+      add_binary([&](const pcd_field& f) { return bytes.data() + i * row + f.offset; });
   }
 
   /// Compressed data lie field after field.
@@ -272,52 +309,40 @@ class pcd_points {
                    " bytes in ", packed));
     std::vector<char> plain(size);
     if (!expand_lzf(block, plain)) fail("the compressed points are damaged");
-    for (std::uint64_t i = 0; i < header_.n; ++i) {
-      add([&](const pcd_field& f, std::size_t k) {
-        return pcd_number(f, plain.data() + f.offset * header_.n + (i * f.count + k) * f.bytes);
+    for (std::uint64_t i = 0; i < header_.n; ++i)
+      add_binary([&](const pcd_field& f) {
+        return plain.data() + f.offset * header_.n + i * f.count * f.bytes;
       });
-    }
   }
 
-  /// Adds a point whose numbers `get(field, k)` gives in file order.
-  template <class Get>
-  void add(Get get) {
-    Eigen::Vector3d position(0, 0, 0);
-    Eigen::Vector3f normal(0, 0, 0);
-    for (const pcd_field& f : header_.fields) {
-      for (std::size_t k = 0; k < f.count; ++k) {
-        const double value = get(f, k);
-        if (k > 0) continue;
-        if (f.name.size() == 1 && f.name[0] >= 'x' && f.name[0] <= 'z')
-          position[f.name[0] - 'x'] = value;
-        if (f.name.size() == 8 && f.name.starts_with("normal_") && f.name[7] >= 'x' &&
-            f.name[7] <= 'z')
-          normal[f.name[7] - 'x'] = static_cast<float>(value);
-        if (&f == color_) result_.colors.push_back(color(f, value));
-        if (&f == label_) result_.labels.push_back(label_of(value));
-      }
-    }
-    positions_.push_back(position);
-    if (header_.find("normal_x")) result_.normals.push_back(normal);
+  /// Adds a point whose fields lie at `place(field)`.
+  template <class Place>
+  void add_binary(Place place) {
+    add([&](const pcd_field& f) { return pcd_number(f, place(f)); },
+        [&](const pcd_field& f) { return pcd_color(f, place(f)); });
   }
 
-  static std::uint32_t label_of(double value) {
-    return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  /// Adds a point by the first number of a field, and what color it is.
+  template <class Number, class Color>
+  void add(Number number, Color color) {
+    const auto triple = [&](const pcd_triple& f) {
+      return Eigen::Vector3d(number(*f[0]), number(*f[1]), number(*f[2]));
+    };
+    positions_.push_back(triple(position_));
+    if (has_normals_) result_.normals.push_back(triple(normal_).template cast<float>());
+    if (color_) result_.colors.push_back(color(*color_));
+    if (label_) result_.labels.push_back(label_of(number(*label_)));
   }
 
-  /// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
-  static cloud::color color(const pcd_field& field, double value) {
-    const std::uint32_t bits = field.type == 'F'
-                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
-                                   : label_of(value);
-    return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
-            static_cast<std::uint8_t>(bits)};
-  }
+  using pcd_triple = std::array<const pcd_field*, 3>;
 
   const pcd_header& header_;
   std::filesystem::path path_;
-  const pcd_field* color_;
-  const pcd_field* label_;
+  pcd_triple position_{header_.find("x"), header_.find("y"), header_.find("z")};
+  pcd_triple normal_{header_.find("normal_x"), header_.find("normal_y"), header_.find("normal_z")};
+  bool has_normals_ = normal_[0] && normal_[1] && normal_[2];
+  const pcd_field* color_ = header_.find("rgb") ? header_.find("rgb") : header_.find("rgba");
+  const pcd_field* label_ = header_.find("label");
   std::vector<Eigen::Vector3d> positions_;
   cloud::cloud result_;
 };
