@@ -35,7 +35,7 @@ io::up_axis up_option(options& o) {
   return o.choice("up", io::up_axis::z, {{"z", io::up_axis::z}, {"y", io::up_axis::y}});
 }
 
-/// How much a packed array may hold.
+/// How much a packed array, or a mesh that is repeated, may come to.
 void packed_limits(options& o, io::limits& l) {
   l.max_ratio = o.number("max_ratio", l.max_ratio);
   l.max_bytes = o.count("max_bytes", l.max_bytes);
@@ -158,6 +158,7 @@ void bind_readers(module& m) {
   m.function("read_mesh", {"path", "options"}, [](const path& file, options& o) {
     io::mesh_options read{.up = up_option(o)};
     read.limits.max_points = o.count("max_points", read.limits.max_points);
+    packed_limits(o, read.limits);
     o.done();
     return io::read_mesh(file, read);
   });

@@ -71,7 +71,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
 #endif
     case file_kind::glb:
 #if defined(AIB_WITH_JSON)
-      return read_glb_cloud(path);
+      return read_glb_cloud(path, options.limits);
 #else
       throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
 #endif

@@ -6,6 +6,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/bytes.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/limits.hpp>
 #include <aib/io/positions.hpp>
 #include <aib/mesh/mesh.hpp>
 
@@ -29,14 +30,15 @@ namespace aib::io {
 /// Reads the triangles of a binary glTF 2.0 file (.glb): lists, strips and fans, each node's
 /// transformation applied. A label for each node with a mesh, named as the node. Y is up in glTF.
 ///
-/// Throws format_error where the file is damaged, an index has no vertex, or the file has what is
-/// not read: compressed, quantised or sparse meshes, buffers outside of the file.
-/// Source: Khronos, glTF 2.0 specification.
-mesh::mesh read_glb_mesh(const std::filesystem::path& path);
+/// Throws format_error where the file is damaged, an index has no vertex, nodes repeat meshes
+/// beyond the limits (max_ratio, max_bytes), or the file has what is not read: compressed,
+/// quantised or sparse meshes, buffers outside of the file. Source: Khronos, glTF 2.0
+/// specification.
+mesh::mesh read_glb_mesh(const std::filesystem::path& path, const limits& limits = {});
 
 /// Reads the points of a binary glTF 2.0 file with their colours; of a file without points, the
 /// vertices of its meshes.
-cloud::cloud read_glb_cloud(const std::filesystem::path& path);
+cloud::cloud read_glb_cloud(const std::filesystem::path& path, const limits& limits = {});
 
 namespace detail {
 
@@ -54,7 +56,8 @@ class glb_reader {
  public:
   using json = nlohmann::json;
 
-  glb_reader(std::string_view bytes, const std::filesystem::path& path) : path_(path) {
+  glb_reader(std::string_view bytes, const std::filesystem::path& path, const limits& limits)
+      : path_(path), limits_(limits), file_bytes_(bytes.size()) {
     byte_reader in(bytes, path);
     if (in.take(4, "glb: magic") != "glTF") in.fail("glb: not a binary glTF file");
     const auto version = in.read<std::uint32_t>("glb: version");
@@ -172,6 +175,17 @@ class glb_reader {
            Eigen::Scaling(s[0], s[1], s[2]);
   }
 
+  /// Counts what the content takes, which may be far more than the file has: each node repeats its
+  /// mesh.
+  void take_room(std::size_t n, std::size_t bytes) {
+    room_ += static_cast<double>(n) * static_cast<double>(bytes);
+    if (room_ <= static_cast<double>(limits_.max_bytes) ||
+        room_ <= limits_.max_ratio * static_cast<double>(file_bytes_))
+      return;
+    fail(message("the meshes of a file of ", file_bytes_, " bytes need more than ",
+                 limits_.max_bytes, " (max_bytes, max_ratio)"));
+  }
+
   void add_mesh(const json& shape, const json& node, const Eigen::Affine3d& world_from_mesh) {
     const auto label = static_cast<std::uint32_t>(content_.label_names.size());
     const auto named = [](const json& o) {
@@ -179,7 +193,9 @@ class glb_reader {
       return name != o.end() && name->is_string() ? name->get<std::string>() : std::string();
     };
     content_.label_names.push_back(named(node).empty() ? named(shape) : named(node));
+    take_room(content_.label_names.back().size(), 1);
     for (const json& primitive : list(shape, "primitives")) {
+      take_room(1, sizeof(json));
       const auto attributes = primitive.find("attributes");
       if (attributes == primitive.end() || !attributes->is_object())
         fail("a primitive without attributes");
@@ -201,6 +217,7 @@ class glb_reader {
     const std::size_t first = to.size();
     const accessor source = open(position, 3, true);
     if (source.n > max_vertices - first) fail("more than 2^28 vertices");
+    take_room(source.n, sizeof(Eigen::Vector3d));
     for (std::size_t i = 0; i < source.n; ++i) {
       Eigen::Vector3d p;
       for (int k = 0; k < 3; ++k) p[k] = source.value(i, static_cast<std::size_t>(k));
@@ -222,13 +239,14 @@ class glb_reader {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         content_.colors[content_.colors.size() - n + i][k] =
-            static_cast<std::uint8_t>(std::clamp(source.value(i, k) * unit, 0.0, 255.0) + 0.5);
+            channel_of(source.value(i, k) * unit + 0.5);
   }
 
   std::vector<std::uint32_t> indices(const json& primitive, std::size_t n_vertices) const {
     std::vector<std::uint32_t> result;
     if (const auto index = number(primitive, "indices")) {
       const accessor source = open(*index, 1, false);
+      if (source.type == 5126) fail("indices: whole numbers expected, found floats");
       for (std::size_t i = 0; i < source.n; ++i) {
         const double value = source.value(i, 0);
         if (!(value < static_cast<double>(n_vertices)))
@@ -249,6 +267,7 @@ class glb_reader {
       return static_cast<std::uint32_t>(first + corners[i]);
     };
     const std::size_t step = mode == strip || mode == fan ? 1 : 3;
+    take_room(corners.size() / step, sizeof(mesh::triangle) + sizeof label);
     for (std::size_t i = 0; i + 2 < corners.size(); i += step) {
       const bool flipped = mode == strip && i % 2 == 1;
       const std::size_t a = mode == fan ? 0 : i;
@@ -319,42 +338,37 @@ class glb_reader {
   }
 
   std::filesystem::path path_;
+  const limits& limits_;
+  std::size_t file_bytes_;
+  double room_ = 0;  ///< bytes
   json root_;
   std::string_view buffer_;
   std::vector<bool> visited_;
   glb_content content_;
 };
 
-inline glb_content read_glb(const std::filesystem::path& path) {
+inline glb_content read_glb(const std::filesystem::path& path, const limits& limits) {
   const std::string bytes = read_file(path);
-  return glb_reader(bytes, path).read();
+  return glb_reader(bytes, path, limits).read();
 }
 
 }  // namespace detail
 
-inline mesh::mesh read_glb_mesh(const std::filesystem::path& path) {
-  auto content = detail::read_glb(path);
-  auto floats = to_floats(content.vertices);
-  mesh::mesh result{.origin = floats.origin,
-                    .vertices = std::move(floats.points),
-                    .triangles = std::move(content.triangles),
+inline mesh::mesh read_glb_mesh(const std::filesystem::path& path, const limits& limits) {
+  auto content = detail::read_glb(path, limits);
+  mesh::mesh result{.triangles = std::move(content.triangles),
                     .labels = std::move(content.labels),
                     .label_names = std::move(content.label_names)};
-  if (result.triangles.empty()) result.warnings.push_back("no triangles");
-  if (auto warning = non_finite_warning(result.vertices, "vertices"))
-    result.warnings.push_back(std::move(*warning));
+  set_vertices(result, to_floats(content.vertices));
   return result;
 }
 
-inline cloud::cloud read_glb_cloud(const std::filesystem::path& path) {
-  auto content = detail::read_glb(path);
+inline cloud::cloud read_glb_cloud(const std::filesystem::path& path, const limits& limits) {
+  auto content = detail::read_glb(path, limits);
   const bool has_points = !content.points.empty();
-  auto floats = to_floats(has_points ? content.points : content.vertices);
-  cloud::cloud result{.origin = floats.origin, .points = std::move(floats.points)};
+  cloud::cloud result;
   if (has_points) result.colors = std::move(content.colors);
-  if (result.empty()) result.warnings.push_back("no points");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  set_positions(result, to_floats(has_points ? content.points : content.vertices));
   return result;
 }
 

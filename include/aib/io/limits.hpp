@@ -13,14 +13,15 @@
 namespace aib::io {
 
 /// How much a file may hold: for readers of files that strangers give. What is packed (EXR, PNG,
-/// JPEG, NPZ, PCD) is refused before memory is asked for; of other formats, which need as much
+/// JPEG, NPZ, PCD, GLB) is refused before memory is asked for; of other formats, which need as much
 /// memory as the file has bytes, what was read is counted.
 struct limits {
   std::uint64_t max_pixels = std::uint64_t{1} << 27;  ///< of a picture or a depth map
   /// Points of a cloud; vertices, and triangles, of a mesh.
   std::uint64_t max_points = std::numeric_limits<std::uint64_t>::max();
-  /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size is
-  /// refused where it needs more than `max_bytes`: arrays hardly compress so well, bombs do.
+  /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size, and a
+  /// GLB file whose nodes repeat its meshes to that much, is refused where it needs more than
+  /// `max_bytes`: arrays hardly compress so well, bombs do.
   double max_ratio = 100;
   std::uint64_t max_bytes = std::uint64_t{1} << 30;
 };

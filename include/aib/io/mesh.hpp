@@ -33,7 +33,8 @@ mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& opti
 
 namespace detail {
 
-inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
+inline mesh::mesh read_stored_mesh(const std::filesystem::path& path,
+                                   [[maybe_unused]] const limits& limits) {
   switch (kind_of(path)) {
     case file_kind::ply:
       return read_ply_mesh(path);
@@ -43,7 +44,7 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
       return read_stl(path);
     case file_kind::glb:
 #if defined(AIB_WITH_JSON)
-      return read_glb_mesh(path);
+      return read_glb_mesh(path, limits);
 #else
       throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
 #endif
@@ -57,7 +58,7 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
 }  // namespace detail
 
 inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
-  mesh::mesh result = detail::read_stored_mesh(path);
+  mesh::mesh result = detail::read_stored_mesh(path, options.limits);
   demand_points(path, "vertices", result.vertices.size(), options.limits);
   demand_points(path, "triangles", result.triangles.size(), options.limits);
   turn_z_up(result, options.up);

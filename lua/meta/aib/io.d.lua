@@ -134,7 +134,7 @@ function io.write_array(path, value) end
 ---@field splats? "refuse"|"centres"  # PLY files of 3D Gaussian splats
 ---@field key? string  # NPZ only: the array
 ---@field max_points? integer  # a file of more is refused
----@field max_ratio? number  # NPZ: an array that inflates more, 100 times, is refused ...
+---@field max_ratio? number  # NPZ, GLB: what comes to more, 100 times, is refused ...
 ---@field max_bytes? integer  # ... where it needs more than this, 2^30
 
 ---The points of a PLY, PCD, XYZ, CSV, PTS, LAS, NPY, NPZ (N x 3) or GLB file; of a mesh file (PLY,
@@ -170,9 +170,10 @@ function cloud_writer:commit() end
 function io.cloud_writer(path) end
 
 ---The triangles of a PLY, OBJ, STL or GLB file; polygons become fans. Face labels of PLY and the
----nodes of GLB become labels. A file of more than max_points vertices or triangles is refused.
+---nodes of GLB become labels. A file of more than max_points vertices or triangles is refused, and a
+---GLB whose nodes repeat its meshes to more than max_bytes (2^30) and max_ratio (100) times its size.
 ---@param path string
----@param options? { up?: "z"|"y", max_points?: integer }
+---@param options? { up?: "z"|"y", max_points?: integer, max_ratio?: number, max_bytes?: integer }
 ---@return aib.Mesh
 function io.read_mesh(path, options) end
 
