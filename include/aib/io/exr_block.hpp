@@ -84,7 +84,9 @@ class exr_block_decoder {
     raw_ = reinterpret_cast<const std::uint8_t*>(block.data());
     // A block that the codec could not make smaller is stored as it is.
     if (block.size() == shape.bytes) return true;
-    if (block.size() > shape.bytes || compression == exr_compression::none) return false;
+    if (block.size() > shape.bytes || compression == exr_compression::none ||
+        shape.bytes / exr_best_ratio > block.size())
+      return false;
     raw_ = nullptr;
     bytes_.resize(shape.bytes);
     switch (compression) {

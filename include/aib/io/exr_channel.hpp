@@ -113,10 +113,11 @@ class exr_channel_reader {
   static constexpr std::size_t max_block_bytes = std::size_t{1} << 29;
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-  /// row_of_[y]: where line y goes; none where it is not wanted.
+  /// Where line y goes; none where it is not wanted.
+  std::size_t row_of(std::size_t y) const { return row_of_.empty() ? y : row_of_[y]; }
+
   void place_rows(std::span<const std::size_t> lines) {
-    row_of_.assign(part_.data.height(), none);
-    for (std::size_t i = 0; i < row_of_.size() && lines.empty(); ++i) row_of_[i] = i;
+    if (!lines.empty()) row_of_.assign(part_.data.height(), none);
     for (std::size_t i = lines.size(); i-- > 0;) {
       if (lines[i] >= row_of_.size()) throw argument_error("read_exr_channel: no such line");
       row_of_[lines[i]] = i;
@@ -131,6 +132,7 @@ class exr_channel_reader {
   }
 
   bool is_wanted(std::size_t first, std::size_t n) const {
+    if (row_of_.empty()) return true;
     return std::any_of(row_of_.begin() + static_cast<std::ptrdiff_t>(first),
                        row_of_.begin() + static_cast<std::ptrdiff_t>(first + n),
                        [](std::size_t row) { return row != none; });
@@ -193,7 +195,7 @@ class exr_channel_reader {
     const std::size_t pixel = type_ == exr_pixel::half ? 2 : 4;
     row_bytes_.resize(shape.width * pixel);
     for (std::size_t y = 0; y < shape.height; ++y) {
-      const std::size_t row = row_of_[first + y];
+      const std::size_t row = row_of(first + y);
       if (row == none) continue;
       const std::size_t begin = y * line_bytes + channel_offset_ * shape.width;
       float* const pixels = &to(x, row);
@@ -234,7 +236,7 @@ class exr_channel_reader {
   std::size_t channel_offset_ = 0;  ///< bytes of the channels before, a pixel
   std::size_t block_width_ = 0, block_height_ = 0;
   std::vector<char> offsets_;
-  std::vector<std::size_t> row_of_;
+  std::vector<std::size_t> row_of_;  ///< by line; empty: all of them stay where they are
   std::vector<std::uint8_t> row_bytes_;
   exr_block_decoder decoder_;
 };

@@ -87,6 +87,10 @@ exr_header read_exr_header(const input_file& file, const limits& limits = {});
   return names[static_cast<std::size_t>(compression)];
 }
 
+/// What no codec that aib reads expands beyond: deflate makes 1032 bytes of one, and PXR24 four of
+/// three.
+inline constexpr std::uint64_t exr_best_ratio = 1376;
+
 /// Scan lines in a block.
 [[nodiscard]] constexpr std::size_t block_lines(exr_compression compression) {
   constexpr std::array<std::size_t, 10> lines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
@@ -155,24 +159,24 @@ class exr_header_parser {
     byte_reader in(value, file_.path());
     const auto is = [&](std::string_view n, std::string_view t) { return name == n && type == t; };
     if (is("channels", "chlist")) {
+      once(seen_.channels, name);
       parse_channels(part, in);
-      seen_.channels = true;
     } else if (is("compression", "compression")) {
+      once(seen_.compression, name);
       const auto code = in.read<std::uint8_t>("exr: compression");
       if (code > static_cast<std::uint8_t>(exr_compression::dwab))
         fail(message("exr: unknown compression ", unsigned{code}));
       part.compression = static_cast<exr_compression>(code);
-      seen_.compression = true;
     } else if (is("dataWindow", "box2i")) {
+      once(seen_.data, name);
       part.data = parse_window(in);
-      seen_.data = true;
     } else if (is("displayWindow", "box2i")) {
+      once(seen_.display, name);
       part.display = parse_window(in);
-      seen_.display = true;
     } else if (is("tiles", "tiledesc")) {
+      once(seen_.tiles, name);
       part.tile_width = in.read<std::uint32_t>("exr: tiles");
       part.tile_height = in.read<std::uint32_t>("exr: tiles");
-      seen_.tiles = true;
     } else if (is("name", "string")) {
       part.name = value;
     } else if (is("type", "string")) {
@@ -183,11 +187,18 @@ class exr_header_parser {
     }
   }
 
+  void once(bool& seen, std::string_view name) const {
+    if (std::exchange(seen, true)) fail(message("exr: the attribute ", name, " comes twice"));
+  }
+
   void parse_channels(exr_part& part, byte_reader& in) {
     for (;;) {
       exr_channel_info channel;
       channel.name = in.read_name("exr: name of a channel");
       if (channel.name.empty()) return;
+      for (const exr_channel_info& other : part.channels)
+        if (other.name == channel.name)
+          fail(message("exr: channel ", channel.name, " comes twice"));
       const auto type = in.read<std::int32_t>("exr: type of a channel");
       if (type < 0 || type > 2) fail(message("exr: channel ", channel.name, ": type ", type));
       channel.type = static_cast<exr_pixel>(type);
@@ -227,6 +238,10 @@ class exr_header_parser {
     if (is_tiled_ && (!seen_.tiles || part.tile_width == 0 || part.tile_height == 0 ||
                       part.tile_width > limits_.max_pixels / part.tile_height))
       fail("exr: no size of the tiles in the header");
+    const std::uint64_t bytes = part.data.width() * part.data.height() * part.pixel_bytes();
+    if (part.compression <= exr_compression::pxr24 && bytes / exr_best_ratio > file_.size())
+      fail(message("exr: ", part.data.width(), "x", part.data.height(), " pixels of ",
+                   part.pixel_bytes(), " bytes in a file of ", file_.size(), " bytes"));
     n_blocks_.push_back(block_count(part));
   }
 
