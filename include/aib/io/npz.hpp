@@ -14,8 +14,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
-#include <optional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -38,7 +39,7 @@ struct npz_place {
 
 /// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
 /// come from the central directory, contents are checked against their CRC-32. Members are read
-/// when asked for.
+/// when asked for; of two of the same name there is the last alone, as NumPy has it.
 ///
 /// Needs zlib.
 /// Source: PKWARE, APPNOTE.TXT 6.3.10; numpy.savez.
@@ -107,6 +108,7 @@ class npz_file {
   input_file file_;
   io::limits limits_;
   std::vector<member> members_;
+  std::map<std::string, std::size_t, std::less<>> places_;  ///< of members_, by name
 };
 
 /// All arrays of an NPZ file by name are too much at once as a rule; this reads one.
@@ -180,7 +182,12 @@ inline npz_file::npz_file(const std::filesystem::path& path, const io::limits& l
     member m = read_entry(in);
     if (!m.name.ends_with(".npy")) continue;
     m.name.resize(m.name.size() - 4);
-    members_.push_back(std::move(m));
+    const auto [known, is_new] = places_.try_emplace(m.name, members_.size());
+    if (is_new) {
+      members_.push_back(std::move(m));
+    } else {
+      members_[known->second] = std::move(m);
+    }
   }
 }
 
@@ -326,9 +333,8 @@ inline void npz_file::read_zip64(std::string_view extra,
 }
 
 inline const npz_file::member* npz_file::find(std::string_view name) const {
-  const auto m = std::find_if(members_.begin(), members_.end(),
-                              [&](const member& one) { return one.name == name; });
-  return m == members_.end() ? nullptr : &*m;
+  const auto place = places_.find(name);
+  return place == places_.end() ? nullptr : &members_[place->second];
 }
 
 inline const npz_file::member& npz_file::get(std::string_view name) const {
