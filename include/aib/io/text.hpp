@@ -3,14 +3,13 @@
 #pragma once
 
 #include <aib/core/error.hpp>
+#include <aib/io/numbers.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -47,16 +46,12 @@ inline void split(std::string_view line,
   }
 }
 
-/// The number that the whole text is, in no locale; nothing where it is not one. "nan" and "inf"
-/// are numbers, a leading + is allowed.
+/// The number that the whole text is, see find_number; nothing where it is not one.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  Number value{};
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (code != std::errc()) return std::nullopt;
-  return value;
+  const auto number = find_number<Number>(text);
+  if (!number || number->length != text.size()) return std::nullopt;
+  return number->value;
 }
 
 /// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
