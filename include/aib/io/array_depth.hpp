@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/depth/depth_map.hpp>
+#include <aib/io/file_kind.hpp>
 #include <aib/io/limits.hpp>
 #include <aib/io/npy.hpp>
 
@@ -23,6 +24,35 @@
 
 namespace aib::io {
 
+namespace detail {
+
+/// An array's axes as pictures.
+struct frame_shape {
+  std::size_t n = 1, height = 0, width = 0;
+  std::size_t components = 1;  ///< of a pixel
+};
+
+/// The pictures of an array of H x W or N x H x W, with axes of length 1 before or behind; nothing
+/// where it is none. components   what the last axis may be, if it has that length
+inline std::optional<frame_shape> find_frames(std::vector<std::size_t> shape,
+                                              std::size_t components) {
+  frame_shape frames;
+  if (components > 1 && shape.size() > 2 && shape.back() == components) {
+    frames.components = components;
+    shape.pop_back();
+  }
+  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
+  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
+  if (shape.size() < 2 || shape.size() > 3 || element_count(shape).value_or(0) == 0)
+    return std::nullopt;
+  if (shape.size() == 3) frames.n = shape.front();
+  frames.height = shape[shape.size() - 2];
+  frames.width = shape.back();
+  return frames;
+}
+
+}  // namespace detail
+
 /// Depth maps in an array: H x W, or N of them, with axes of length 1 before or behind as the
 /// methods leave them (VGGT: N x H x W x 1, pi3: 1 x N x H x W x 3).
 class array_frames {
@@ -31,15 +61,14 @@ class array_frames {
   /// Throws format_error where the array has not that shape.
   array_frames(array values, const std::filesystem::path& path, std::string_view name);
 
-  [[nodiscard]] std::size_t size() const { return n_; }
+  [[nodiscard]] std::size_t size() const { return shape_.n; }
 
   /// Frame number i < size().
   [[nodiscard]] raster::image<float> frame(std::size_t i) const;
 
  private:
   array values_;
-  std::size_t n_ = 1, height_ = 0, width_ = 0;
-  std::size_t components_ = 1;
+  detail::frame_shape shape_;
 };
 
 /// Reads the depth maps of an NPY or NPZ file.
@@ -56,31 +85,22 @@ inline array_frames::array_frames(array values,
                                   const std::filesystem::path& path,
                                   std::string_view name)
     : values_(std::move(values)) {
-  std::vector<std::size_t> shape = values_.shape;
-  if (shape.size() > 2 && shape.back() == 3 && name == "local_points") {
-    components_ = 3;
-    shape.pop_back();
-  }
-  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
-  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
-  if (shape.size() < 2 || shape.size() > 3 || values_.size() == 0) {
+  const auto shape = detail::find_frames(values_.shape, name == "local_points" ? 3 : 1);
+  if (!shape) {
     throw format_error(
         path, message("an array of H x W or N x H x W expected", name.empty() ? "" : " in ", name,
                       ", found ", text_of_shape(values_.shape)));
   }
-  width_ = shape.back();
-  height_ = shape[shape.size() - 2];
-  if (shape.size() == 3) n_ = shape.front();
+  shape_ = *shape;
 }
 
 inline raster::image<float> array_frames::frame(std::size_t i) const {
-  if (i >= n_) {
-    throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
-  }
-  raster::image<float> image(width_, height_);
-  const std::size_t first = i * image.size() * components_ + (components_ - 1);
+  const auto& [n, height, width, components] = shape_;
+  if (i >= n) throw argument_error(message("frame ", i + 1, " of ", n, " does not exist"));
+  raster::image<float> image(width, height);
+  const std::size_t first = i * image.size() * components + (components - 1);
   for (std::size_t k = 0; k < image.size(); ++k)
-    image.data()[k] = static_cast<float>(values_[first + k * components_]);
+    image.data()[k] = static_cast<float>(values_[first + k * components]);
   return image;
 }
 
@@ -118,10 +138,7 @@ inline std::string depth_member(const npz_file& file, const std::string& key) {
 inline array_frames read_array_frames(const std::filesystem::path& path,
                                       const std::string& key,
                                       [[maybe_unused]] const limits& limits) {
-  std::string begin(2, '\0');
-  const input_file file(path);
-  if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
-  if (begin != "PK") return array_frames(read_npy(path), path, key);
+  if (kind_of(path) != file_kind::npz) return array_frames(read_npy(path), path, key);
 #if defined(AIB_WITH_NPZ)
   const npz_file members(path, limits);
   const std::string name = detail::depth_member(members, key);

@@ -7,6 +7,7 @@
 #include <aib/io/colmap_binary.hpp>
 #include <aib/io/colmap_records.hpp>
 #include <aib/io/colmap_text.hpp>
+#include <aib/io/file.hpp>
 #include <aib/io/positions.hpp>
 #include <aib/io/text.hpp>
 #include <aib/io/trajectory_check.hpp>
@@ -81,11 +82,6 @@ enum class colmap_content {
 namespace colmap::detail {
 
 namespace fs = std::filesystem;
-
-inline bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
 
 inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
   if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin"))
@@ -273,7 +269,7 @@ inline std::vector<colmap_model> read_colmap_models(const std::filesystem::path&
   }
   if (models.empty()) {
     throw io_error(path,
-                   colmap::detail::is_there(path)
+                   is_there(path)
                        ? "colmap: cameras and images (.bin or .txt) expected here, in numbered "
                          "folders or in sparse, found none"
                        : "no such folder");

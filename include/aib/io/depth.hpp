@@ -108,12 +108,13 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
 inline depth::depth_map read_png_depth(const std::filesystem::path& path,
                                        const depth_options& options) {
 #if defined(AIB_WITH_PNG)
-  const png_header header = read_png_header(path, options.limits);
+  png_decoder decoder(path, options.limits);
+  const png_header header = decoder.header();
   if (header.bits != 16 || !header.is_gray)
     throw format_error(path,
                        "png: gray depth of 16 bits expected; 8 bits or colours are a picture "
                        "of depth, not depth");
-  const auto stored = read_png_gray(path, options.limits);
+  const auto stored = decode_gray(decoder);
   depth::depth_map result{raster::image<float>(stored.width(), stored.height())};
   std::copy(stored.begin(), stored.end(), result.values.begin());
   if (options.scale == 0)

@@ -5,6 +5,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/array_depth.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/file_kind.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/raster/image.hpp>
 
@@ -39,10 +40,10 @@ class frame_stack {
   /// x W (x 1, x 3 for the names of point maps) or is in Fortran order.
   explicit frame_stack(const std::filesystem::path& path, const std::string& key = {});
 
-  [[nodiscard]] std::size_t size() const { return n_; }
-  [[nodiscard]] std::size_t height() const { return height_; }
-  [[nodiscard]] std::size_t width() const { return width_; }
-  [[nodiscard]] bool is_point_map() const { return components_ == 3; }
+  [[nodiscard]] std::size_t size() const { return shape_.n; }
+  [[nodiscard]] std::size_t height() const { return shape_.height; }
+  [[nodiscard]] std::size_t width() const { return shape_.width; }
+  [[nodiscard]] bool is_point_map() const { return shape_.components == 3; }
 
   /// Frame i as it is stored. Throws argument_error where there is none.
   [[nodiscard]] array at(std::size_t i);
@@ -74,7 +75,7 @@ class frame_stack {
   std::unique_ptr<source> source_;
   dtype type_ = dtype::f4;
   bool reversed_ = false;
-  std::size_t n_ = 1, height_ = 0, width_ = 0, components_ = 1;
+  detail::frame_shape shape_;
 };
 
 namespace detail {
@@ -193,12 +194,7 @@ inline void frame_stack::open_npy(const std::filesystem::path& path) {
 }
 
 inline frame_stack::frame_stack(const std::filesystem::path& path, const std::string& key) {
-  std::string begin(2, '\0');
-  {
-    const input_file file(path);
-    if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
-  }
-  if (begin == "PK")
+  if (kind_of(path) == file_kind::npz)
     open_npz(path, key);
   else
     open_npy(path);
@@ -207,31 +203,23 @@ inline frame_stack::frame_stack(const std::filesystem::path& path, const std::st
 inline void frame_stack::set_shape(const detail::npy_header& header,
                                    const std::filesystem::path& path,
                                    std::string_view name) {
-  std::vector<std::size_t> shape = header.shape;
-  if (shape.size() > 2 && shape.back() == 3 && detail::is_point_map_name(name)) {
-    components_ = 3;
-    shape.pop_back();
-  }
-  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
-  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
-  if (shape.size() < 2 || shape.size() > 3 || header.fortran ||
-      detail::element_count(shape).value_or(0) == 0) {
+  const auto shape = detail::find_frames(header.shape, detail::is_point_map_name(name) ? 3 : 1);
+  if (!shape || header.fortran) {
     throw format_error(
         path, message("an array of N x H x W in C order expected in ", name, ", found ",
                       text_of_shape(header.shape), header.fortran ? " in Fortran order" : ""));
   }
   type_ = header.type;
   reversed_ = header.order != std::endian::native;
-  width_ = shape.back();
-  height_ = shape[shape.size() - 2];
-  if (shape.size() == 3) n_ = shape.front();
+  shape_ = *shape;
 }
 
 inline array frame_stack::at(std::size_t i) {
-  if (i >= n_) throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
-  array frame{type_, {height_, width_}, {}};
-  if (components_ > 1) frame.shape.push_back(components_);
-  frame.bytes.resize(height_ * width_ * components_ * size_of(type_));
+  const auto& [n, height, width, components] = shape_;
+  if (i >= n) throw argument_error(message("frame ", i + 1, " of ", n, " does not exist"));
+  array frame{type_, {height, width}, {}};
+  if (components > 1) frame.shape.push_back(components);
+  frame.bytes.resize(height * width * components * size_of(type_));
   source_->read(std::uint64_t{i} * frame.bytes.size(), frame.bytes);
   if (reversed_) detail::reverse_elements(frame.bytes, size_of(type_));
   return frame;
@@ -239,9 +227,9 @@ inline array frame_stack::at(std::size_t i) {
 
 inline raster::image<float> frame_stack::frame(std::size_t i) {
   const std::vector<float> values = at(i).values<float>();
-  raster::image<float> image(width_, height_);
+  raster::image<float> image(width(), height());
   for (std::size_t k = 0; k < image.size(); ++k)
-    image.data()[k] = values[k * components_ + components_ - 1];
+    image.data()[k] = values[k * shape_.components + shape_.components - 1];
   return image;
 }
 

@@ -167,9 +167,10 @@ inline png_header read_png_header(const std::filesystem::path& path, const limit
   return detail::png_decoder(path, limits).header();
 }
 
-inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
-                                                  const limits& limits) {
-  detail::png_decoder decoder(path, limits);
+namespace detail {
+
+/// The stored numbers of an opened file, see read_png_gray.
+inline raster::image<std::uint16_t> decode_gray(png_decoder& decoder) {
   const png_header header = decoder.header();
   if (!(header.is_gray || header.has_palette) || header.has_alpha)
     decoder.fail("gray pixels without transparency expected, found colours or transparency");
@@ -180,7 +181,15 @@ inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& p
   }
   std::vector<std::uint8_t> packed(decoder.decoded_size(SPNG_FMT_PNG));
   decoder.decode(SPNG_FMT_PNG, packed.data(), packed.size());
-  return detail::unpack_samples(packed, header);
+  return unpack_samples(packed, header);
+}
+
+}  // namespace detail
+
+inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                                  const limits& limits) {
+  detail::png_decoder decoder(path, limits);
+  return detail::decode_gray(decoder);
 }
 
 inline raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits) {

@@ -5,6 +5,7 @@
 #include <aib/core/error.hpp>
 #include <aib/io/colmap.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/file_kind.hpp>
 #include <aib/io/number_lines.hpp>
 #include <aib/io/text.hpp>
 
@@ -157,7 +158,7 @@ inline std::optional<pose_format> format_of_extension(const std::filesystem::pat
        {".npz", pose_format::npz},
        {".xml", pose_format::metashape}}};
   for (const auto& [extension, format] : extensions) {
-    if (path.extension() == extension) return format;
+    if (extension_of(path) == extension) return format;
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/colmap_write.hpp>
+#include <aib/io/file_kind.hpp>
 #include <aib/io/kitti.hpp>
 #include <aib/io/npy.hpp>
 #include <aib/io/pose_arrays.hpp>
@@ -18,6 +19,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace aib::io {
@@ -42,7 +44,7 @@ void write_trajectory(const std::filesystem::path& path,
 namespace detail {
 
 inline pose_format format_to_write(const std::filesystem::path& path) {
-  const auto extension = path.extension();
+  const std::string extension = extension_of(path);
   if (extension == ".json") return pose_format::transforms;
   if (extension == ".npy") return pose_format::npy;
   if (extension == ".kitti") return pose_format::kitti;
