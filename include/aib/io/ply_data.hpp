@@ -10,6 +10,7 @@
 #include <aib/io/text.hpp>
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -141,7 +142,8 @@ class ply_ascii_data : public ply_data {
 
   void read_list(const ply_property& p, bool wanted, ply_row& row) {
     const double count = row.values.back();
-    if (!(count >= 0)) throw error(message("ply: list ", p.name, " of ", count, " items"));
+    if (!(count >= 0) || count != std::floor(count))
+      throw error(message("ply: list ", p.name, " of ", count, " items"));
     for (double k = 0; k < count; ++k) {
       const double item = take(p);
       if (wanted) row.list.push_back(item);

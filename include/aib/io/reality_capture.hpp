@@ -51,15 +51,19 @@ class csv_table {
     if (header.starts_with('#')) header.remove_prefix(1);
     std::vector<std::string_view> names;
     split(header, names, ',');
-    for (std::size_t i = 0; i < names.size(); ++i) columns_[std::string(names[i])] = i;
+    n_columns_ = names.size();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!columns_.emplace(names[i], i).second && !names[i].empty())
+        lines_.fail(message("reality_capture: column '", names[i], "' comes twice"));
+    }
   }
 
   bool next() {
     if (!lines_.next_content()) return false;
     split(lines_.line(), fields_, ',');
-    if (fields_.size() != columns_.size()) {
-      lines_.fail(message("reality_capture: ", columns_.size(), " columns expected, found ",
-                          fields_.size()));
+    if (fields_.size() != n_columns_) {
+      lines_.fail(
+          message("reality_capture: ", n_columns_, " columns expected, found ", fields_.size()));
     }
     return true;
   }
@@ -78,6 +82,7 @@ class csv_table {
 
  private:
   line_reader lines_;
+  std::size_t n_columns_ = 0;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string_view> fields_;
 };
