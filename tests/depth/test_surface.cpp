@@ -116,6 +116,14 @@ TEST_CASE(
                   undefined_error);
 }
 
+TEST_CASE("a camera without a focal length has no ground sampling distance") {
+  const auto map = plane(0, 4);
+  for (const double f : {0.0, -80.0, std::nan("")}) {
+    const math::camera camera = math::pinhole(width, height, f, f, 32, 24);
+    CHECK_THROWS_AS(depth::surface_errors(view(map), view(map), camera), argument_error);
+  }
+}
+
 TEST_CASE("plane errors: a wall that is turned, moved and wavy; what is no plane is left out") {
   const auto reference = plane(0.2, 4);
   auto estimate = plane(0.3, 4);
@@ -136,6 +144,16 @@ TEST_CASE("plane errors: a wall that is turned, moved and wavy; what is no plane
   found = depth::plane_errors(view(estimate), view(reference), rays, view(labels));
   CHECK(found.at(7).flatness == Approx(0.0098).epsilon(0.05));
   CHECK(found.at(7).reference_flatness < 1e-5);
+}
+
+TEST_CASE("plane errors: a row of pixels is no plane, though rounded depths span one") {
+  const auto reference = plane(0.3, 10);
+  const auto estimate = plane(0.3, 11);
+  raster::image<std::uint16_t> labels(width, height, 0);
+  for (std::size_t x = 0; x < width; ++x) labels(x, height / 2) = 1;
+  for (std::size_t y = 0; y < height; ++y) labels(y, y) = 2;
+  const auto rays = depth::rays(photo(), width, height);
+  CHECK(depth::plane_errors(view(estimate), view(reference), rays, view(labels)).empty());
 }
 
 TEST_CASE("risk and coverage: a confidence that knows, one that does not, one that misleads") {

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "synthetic.hpp"
+#include <cstdint>
 #include <vector>
 
 using namespace aib;
@@ -96,6 +97,7 @@ TEST_CASE("the worst pairs are those of the frame that is off") {
   for (const auto& w : worst) CHECK((w.first == "005.png" || w.second == "005.png"));
   CHECK(worst[0].rotation_deg == doctest::Approx(math::degrees(1.5)));
   CHECK(pose::worst_pairs(wrong, reference, {.n = 1000}).size() == 276);
+  CHECK(pose::worst_pairs(wrong, reference, {.n = SIZE_MAX / 2}).size() == 276);
   CHECK(pose::worst_pairs({}, {}).empty());
 }
 

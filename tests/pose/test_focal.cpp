@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <vector>
 
 using namespace aib;
@@ -41,6 +42,18 @@ TEST_CASE("no view has no focal error, nor has a camera without focal length") {
   const math::camera sphere{math::camera_model::equirectangular, 100, 50, {100, 50}};
   const std::vector<pose::camera_pair> views = {{sphere, reference}};
   CHECK_THROWS_AS(pose::focal_error(views), argument_error);
+}
+
+TEST_CASE("a focal length that is none gives no number") {
+  const auto with_focal = [](double f) { return math::pinhole(1920, 1080, f, f, 960, 540); };
+  for (const double f : {0.0, -2000.0, std::nan(""), HUGE_VAL}) {
+    const std::vector<pose::camera_pair> views = {{reference, with_focal(f)}};
+    CHECK_THROWS_AS(pose::focal_error(views), argument_error);
+  }
+  const std::vector<pose::camera_pair> lost = {{with_focal(std::nan("")), reference}};
+  CHECK_THROWS_AS(pose::focal_error(lost), argument_error);
+  const std::vector<pose::camera_pair> inside_out = {{with_focal(-2000), reference}};
+  CHECK(pose::focal_error(inside_out).mre == 2);
 }
 
 }  // namespace test_focal

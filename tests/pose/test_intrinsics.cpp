@@ -49,9 +49,11 @@ TEST_CASE("intrinsics of views: focal, principal point, spread") {
   CHECK_THROWS_AS(pose::intrinsics_error({}), undefined_error);
 }
 
-TEST_CASE("an unknown image size is refused") {
+TEST_CASE("an unknown image size is refused, a large one is not") {
   CHECK_THROWS_AS(pose::reprojection_difference(math::pinhole(0, 0, 500, 500, 320, 240), reference),
                   argument_error);
+  const math::camera large = math::pinhole(65536, 65536, 5e4, 5e4, 3e4, 3e4);
+  CHECK(pose::reprojection_difference(large, large).max < 1e-9);
 }
 
 }  // namespace test_intrinsics

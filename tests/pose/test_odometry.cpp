@@ -70,6 +70,9 @@ TEST_CASE("sub-trajectories: length, percent, yaw and gravity") {
   REQUIRE(straight.size() == 5);
   CHECK(straight[0].translation_percent.median == doctest::Approx(2).epsilon(0.01));
   CHECK_THROWS_AS(pose::sub_trajectories({}, {}), undefined_error);
+  const auto still = [] { return drive(0, 0); };
+  CHECK_THROWS_AS(pose::sub_trajectories(still(), still()), undefined_error);
+  CHECK_THROWS_AS(pose::sub_trajectories(still(), still(), {.lengths = {0}}), argument_error);
 }
 
 }  // namespace test_odometry

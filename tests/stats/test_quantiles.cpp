@@ -4,6 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <vector>
+
 using namespace aib;
 
 namespace test_quantiles {
@@ -17,6 +20,11 @@ TEST_CASE("quantiles of an even number of values follow their rule") {
   CHECK(stats::quantile(s, 0.25) == 1.75);
   CHECK(stats::quantile(s, 0) == 1);
   CHECK(stats::quantile(s, 1) == 4);
+}
+
+TEST_CASE("between two infinities lies infinity") {
+  const std::vector<double> v{1, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  CHECK(stats::quantile(std::span<const double>(v), 0.5) == HUGE_VAL);
 }
 
 TEST_CASE("a quantile of nothing is undefined, outside [0, 1] it is refused") {

@@ -35,7 +35,7 @@ struct plane_errors_summary {
 
 /// Planarity and orientation errors of walls, decks and panels, one plane a label; 0 is no plane.
 /// Both planes are fitted to the pixels valid in both maps, by least squares of distances. A label
-/// with fewer than three such pixels, or with all of them in a row, is left out.
+/// with fewer than three such pixels, or with all of them in a row of the image, is left out.
 ///
 /// The estimate is taken as it is: iBims-1 scales it by the median of each plane first, for which
 /// fit it (alignment::median) with the plane as mask.
@@ -82,7 +82,7 @@ inline std::map<std::uint16_t, plane_errors_summary> plane_errors(
   check_size("depth::plane_errors", estimate, "rays", rays.view());
   check_size("depth::plane_errors", estimate, "label image", planes);
   struct point_pairs {
-    std::vector<Eigen::Vector3d> estimate, reference;
+    std::vector<Eigen::Vector3d> sight, estimate, reference;
   };
   std::map<std::uint16_t, point_pairs> by_label;
   for (std::size_t y = 0; y < estimate.height; ++y) {
@@ -91,14 +91,17 @@ inline std::map<std::uint16_t, plane_errors_summary> plane_errors(
                           is_valid(reference(x, y)) && !std::isnan(rays(x, y).x());
       if (!counts) continue;
       point_pairs& pairs = by_label[planes(x, y)];
+      pairs.sight.push_back(point_at(rays(x, y), 1));
       pairs.estimate.push_back(point_at(rays(x, y), static_cast<double>(estimate(x, y))));
       pairs.reference.push_back(point_at(rays(x, y), static_cast<double>(reference(x, y))));
     }
   }
   std::map<std::uint16_t, plane_errors_summary> result;
   for (const auto& [label, pairs] : by_label) {
+    // Points of a row span the plane of their sight lines, by the rounding of their depths alone.
+    const bool in_a_row = !detail::fit_plane(pairs.sight);
     const auto e = detail::fit_plane(pairs.estimate), r = detail::fit_plane(pairs.reference);
-    if (!e || !r) continue;
+    if (in_a_row || !e || !r) continue;
     const double angle = angle_between(e->normal, r->normal);
     result[label] = {.flatness = e->flatness,
                      .orientation = std::min(angle, std::numbers::pi - angle),

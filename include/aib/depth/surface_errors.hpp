@@ -67,7 +67,7 @@ struct surface_error_summary {
 /// An error along the ray shrinks by the cosine of the angle of incidence where the surface is seen
 /// at a slant: distance = |e - r| * |n . ray|, n the normal of the reference. Throws
 /// undefined_error, with the counts, if no pixel is valid in both; argument_error if sizes differ
-/// or the camera has no focal length.
+/// or the camera has no focal length > 0.
 [[nodiscard]] surface_error_summary surface_errors(raster::view<const float> estimate,
                                                    raster::view<const float> reference,
                                                    const math::camera& camera,
@@ -105,6 +105,10 @@ inline surface_distances measure_surface(raster::view<const float> estimate,
   const bool slanted = o.distance == surface_distance::normal;
   const normal_image normal = slanted ? normals(reference, ray, o.normals) : normal_image();
   const double focal = (camera.fx() + camera.fy()) / 2;
+  if (!(focal > 0 && std::isfinite(focal))) {
+    throw argument_error(
+        message("depth::surface_errors: a focal length > 0 expected, found ", focal));
+  }
   surface_distances found;
   for (std::size_t y = 0; y < reference.height; ++y) {
     for (std::size_t x = 0; x < reference.width; ++x) {

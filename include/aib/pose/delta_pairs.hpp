@@ -47,6 +47,7 @@ namespace detail {
 }
 
 inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_options& options) {
+  if (!(options.delta < static_cast<double>(n))) return {};
   const auto delta = static_cast<std::size_t>(options.delta);
   const std::size_t step = options.all_pairs ? 1 : delta;
   std::vector<frame_pair> out;

@@ -49,7 +49,8 @@ inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uin
 /// Mean of |f - f_ref| / f_ref over views. The estimate's focal lengths are rescaled to the
 /// reference's image size (sizes of 0 are unknown: taken for equal), fx and fy averaged.
 ///
-/// Throws undefined_error if there is no view, argument_error where a model has no focal length.
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length,
+/// one is not finite or that of a reference not positive.
 inline focal_error_result focal_error(std::span<const camera_pair> views,
                                       focal_over over = focal_over::views) {
   focal_error_result out{0, 0, {}};
@@ -65,6 +66,10 @@ inline focal_error_result focal_error(std::span<const camera_pair> views,
     const math::camera& ref = view.reference;
     const double f_ref = (ref.fx() + ref.fy()) / 2;
     const double f = focal_at_size(view.estimate, ref.width, ref.height);
+    if (!std::isfinite(f) || !(f_ref > 0 && std::isfinite(f_ref))) {
+      throw argument_error(message("focal_error: finite focal lengths, of a reference > 0, ",
+                                   "expected, found ", f, " against ", f_ref));
+    }
     out.each.push_back(std::abs(f - f_ref) / f_ref);
     out.mre += out.each.back();
   }

@@ -37,7 +37,8 @@ struct reprojection_difference_result {
 inline reprojection_difference_result reprojection_difference(const math::camera& estimate,
                                                               const math::camera& reference,
                                                               std::size_t cells = 32) {
-  if (estimate.width * estimate.height * reference.width * reference.height * cells == 0)
+  if (std::min({estimate.width, estimate.height, reference.width, reference.height}) == 0 ||
+      cells == 0)
     throw argument_error("reprojection_difference: image sizes and a grid expected");
   const auto width = static_cast<double>(reference.width);
   const auto height = static_cast<double>(reference.height);

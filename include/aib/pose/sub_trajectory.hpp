@@ -40,8 +40,8 @@ struct sub_trajectory_errors {
 /// than two sub-trajectories are left out.
 ///
 /// Invariant to a translation and a turn about z of either side. Frames without a finite pose are
-/// passed over. Throws argument_error if the trajectories are not associated, undefined_error if no
-/// length has two.
+/// passed over. Throws argument_error if the trajectories are not associated or a length is not
+/// positive, undefined_error if no length has two.
 /// Source: Zhang and Scaramuzza, IROS 2018, Sec. IV; rpg_trajectory_evaluation,
 /// compute_trajectory_errors.py.
 inline std::vector<sub_trajectory_errors> sub_trajectories(
@@ -51,11 +51,13 @@ inline std::vector<sub_trajectory_errors> sub_trajectories(
   const registered_frames frames = registered("sub_trajectories", estimate, reference);
   const std::vector<double> path = path_lengths(frames.reference);
   std::vector<double> lengths = options.lengths;
-  if (lengths.empty() && !path.empty()) {
+  if (lengths.empty() && !path.empty() && path.back() > 0) {
     for (int k = 1; k <= 5; ++k) lengths.push_back(path.back() * k / 10);
   }
   std::vector<sub_trajectory_errors> out;
   for (const double length : lengths) {
+    if (!(length > 0))
+      throw argument_error(message("sub_trajectories: lengths > 0 expected, found ", length));
     std::vector<double> translation, percent, rotation, per_m, yaw, gravity;
     for (const frame_pair& pair : detail::nearest_along_path(path, length, options.tolerance)) {
       const auto motion = [&](const std::vector<math::rigid3>& poses) {

@@ -36,6 +36,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
                                            const worst_pairs_options& options = {}) {
   const registered_frames frames = registered("worst_pairs", estimate, reference);
   const frame_pairs pairs(frames.estimate, frames.reference);
+  const std::size_t n_wanted = std::min(options.n, pairs.frames() * pairs.frames());
   struct found {
     double error;
     std::size_t i, j;
@@ -45,7 +46,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
     }
   };
   const auto keep_worst = [&](std::vector<found>& list) {
-    const std::size_t n = std::min(options.n, list.size());
+    const std::size_t n = std::min(n_wanted, list.size());
     std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(n), list.end());
     list.resize(n);
   };
@@ -59,7 +60,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
             const double error = translation > rotation ? translation : rotation;  // NaN: rotation
             if (!(error > least)) return;
             list.push_back({error, i, j});
-            if (list.size() < 2 * options.n + 100) return;
+            if (list.size() < 2 * n_wanted + 100) return;
             keep_worst(list);
             least = list.empty() ? least : list.back().error;
           };

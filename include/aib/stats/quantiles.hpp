@@ -36,6 +36,7 @@ double quantile_in_place(std::span<Scalar> values,
   const double share = place - static_cast<double>(below);
   if (share == 0 || rule == quantile_rule::lower) return low;
   const double high = static_cast<double>(*std::min_element(nth + 1, values.end()));
+  if (low == high) return low;  // of two infinities too
   return rule == quantile_rule::midpoint ? (low + high) / 2 : low + (high - low) * share;
 }
 
