@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -53,6 +54,13 @@ TEST_CASE("what is beyond the maximum is left out and told") {
   CHECK(c.accuracy == 1);
   CHECK(c.estimate_beyond == 0.5);
   CHECK(c.reference_beyond == 0);
+}
+
+TEST_CASE("a stray whose distance no float holds leaves no NaN") {
+  const auto c = cloud::compare(on_x({0, 1e20F}), on_x({0, 1}));
+  CHECK(std::isinf(c.accuracy));
+  CHECK(c.completeness == 0.5);
+  CHECK(c.f1_distance == 1);
 }
 
 TEST_CASE("points that are not finite are counted over both clouds; nothing is undefined") {

@@ -121,6 +121,20 @@ TEST_CASE("ranges of foreign points become clouds") {
         Eigen::Vector3d(0, 0, 0));
 }
 
+TEST_CASE("a few strays, however far, do not blur the other points") {
+  for (const Eigen::Vector3d& place :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(4.5e5, 5.4e6, 100)}) {
+    std::vector<Eigen::Vector3d> positions;
+    for (int i = 0; i < 5000; ++i) positions.push_back(place + Eigen::Vector3d(0.01 * i, 7.123, 2));
+    for (const double far : {1e5, -1e9, 1e15}) positions.insert(positions.begin(), {far, far, 0});
+    positions.push_back({NAN, 0, 0});
+    const cloud::cloud c = cloud::from_points(positions);
+    for (std::size_t i = 3; i + 1 < c.size(); ++i)
+      REQUIRE((c.position(i) - positions[i]).norm() < 1e-5);
+    CHECK(c.position(2).x() == doctest::Approx(1e5));
+  }
+}
+
 TEST_CASE("shares below many thresholds are those below each") {
   const cloud::cloud from{.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}}};
   const cloud::cloud to{.points = {{0, 0, 0}}};

@@ -35,13 +35,4 @@ struct cloud {
   }
 };
 
-/// The origin that readers give a cloud whose box is [low, high]: 0 where floats hold it well
-/// (|coordinate| < 1024), else the box centre in whole units.
-[[nodiscard]] inline Eigen::Vector3d natural_origin(const Eigen::Vector3d& low,
-                                                    const Eigen::Vector3d& high) {
-  if (low.cwiseAbs().maxCoeff() < 1024 && high.cwiseAbs().maxCoeff() < 1024)
-    return Eigen::Vector3d::Zero();
-  return ((low + high) / 2).array().round();
-}
-
 }  // namespace aib::cloud

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <aib/cloud/box.hpp>
 #include <aib/cloud/cloud.hpp>
+#include <aib/cloud/origin.hpp>
 #include <aib/core/concepts.hpp>
 #include <aib/core/error.hpp>
 
@@ -25,7 +25,7 @@ namespace aib::cloud {
   return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
 }
 
-/// Positions in double as the float points of a cloud, counted from their natural origin.
+/// Positions in double as the float points of a cloud, see origin_finder.
 struct placed_points {
   Eigen::Vector3d origin;
   std::vector<Eigen::Vector3f> points;
@@ -35,13 +35,10 @@ struct placed_points {
 /// they are and have no part in the origin.
 template <class Position>
 [[nodiscard]] placed_points place(std::size_t n, Position&& position) {
-  box all;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d p = position(i);
-    if (p.allFinite()) all.add(p);
-  }
+  origin_finder origin(n);
+  for (std::size_t i = 0; i < n; ++i) origin.add(position(i));
   placed_points placed;
-  placed.origin = all.empty() ? Eigen::Vector3d(0, 0, 0) : natural_origin(all.low, all.high);
+  placed.origin = origin.result();
   placed.points.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d p = position(i) - placed.origin;

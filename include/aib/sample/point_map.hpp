@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/cloud/origin.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/depth/depth_map.hpp>
@@ -41,7 +42,7 @@ namespace aib::sample {
   if (options.confidence.data) threshold = detail::confidence_threshold(z, options);
   const Eigen::Vector3d& centre = world_from_camera.translation;
   unprojected made{};
-  made.points.origin = cloud::natural_origin(centre, centre);
+  made.points.origin = cloud::natural_origin(centre);
   for (std::size_t y = 0; y < height; y += options.stride) {
     demand_go(options.control);
     for (std::size_t x = 0; x < width; x += options.stride) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/cloud/cloud.hpp>
+#include <aib/cloud/origin.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/depth/depth_map.hpp>
@@ -188,7 +189,7 @@ inline unprojected unproject(const depth::depth_map& map,
   detail::check(map, world_from_camera, options);
   const Eigen::Vector3d& centre = world_from_camera.translation;
   unprojected nothing{};
-  nothing.points.origin = cloud::natural_origin(centre, centre);
+  nothing.points.origin = cloud::natural_origin(centre);
   if (map.values.empty()) return nothing;
   const detail::unprojector rows(map, camera, world_from_camera, options);
   const std::size_t n_rows = (map.values.height() + options.stride - 1) / options.stride;

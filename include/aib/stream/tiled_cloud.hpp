@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <aib/cloud/cloud.hpp>
+#include <aib/cloud/origin.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/io/ply_positions.hpp>
@@ -16,7 +16,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -54,14 +53,10 @@ void for_each_position(const std::filesystem::path& path, const control& control
     file.size = positions.size();
     if (positions.is_float()) return file;
   }
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d high = -low;
-  detail::for_each_position(path, control, [&](std::uint64_t, const Eigen::Vector3d& p) {
-    if (!p.allFinite()) return;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  });
-  if (low[0] <= high[0]) file.origin = cloud::natural_origin(low, high);
+  cloud::origin_finder origin(file.size);
+  detail::for_each_position(path, control,
+                            [&](std::uint64_t, const Eigen::Vector3d& p) { origin.add(p); });
+  file.origin = origin.result();
   return file;
 }
 
