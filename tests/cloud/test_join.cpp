@@ -22,6 +22,15 @@ TEST_CASE("joined clouds keep their places, whatever their origins") {
   CHECK(joined.colors.size() == 2);
 }
 
+TEST_CASE("a cloud that lies far away, joined first, does not blur the others") {
+  const cloud::cloud lost{.origin = {1e9, 0, 0}, .points = {{0, 0, 0}}};
+  const cloud::cloud wall{.points = {{1.001F, 2, 3}, {1.002F, 2, 3}, {1.003F, 2, 3}}};
+  const std::array<const cloud::cloud*, 2> both{&lost, &wall};
+  const cloud::cloud all = cloud::joined(both);
+  CHECK(all.position(0) == lost.position(0));
+  for (std::size_t i = 0; i < 3; ++i) CHECK(all.position(i + 1) == wall.position(i));
+}
+
 TEST_CASE("what not every cloud has is dropped") {
   const cloud::cloud a{.points = {{1, 2, 3}}, .labels = {7}};
   const cloud::cloud b{.points = {{1, 2, 3}}};
