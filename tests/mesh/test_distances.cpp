@@ -54,14 +54,40 @@ cloud::cloud uniform(std::size_t n, double size, std::uint64_t seed) {
   return c;
 }
 
-float brute_force(const Eigen::Vector3f& p, const mesh::mesh& m) {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-    const Eigen::Vector3d d = p.cast<double>();
-    best = std::min(
-        best, (search::nearest_on_triangle(d, mesh::corners(m, t)).position - d).squaredNorm());
+double to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double length = (b - a).squaredNorm();
+  const double share = length > 0 ? std::clamp((b - a).dot(p - a) / length, 0.0, 1.0) : 0;
+  return (a + share * (b - a) - p).norm();
+}
+
+/// By the plane where the foot of p lies within the triangle, else by its sides.
+double to_triangle(const Eigen::Vector3d& p, const std::array<Eigen::Vector3d, 3>& t) {
+  const Eigen::Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  double least = std::numeric_limits<double>::infinity();
+  bool inside = normal.norm() > 1e-9 * (t[1] - t[0]).norm() * (t[2] - t[0]).norm();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &a = t[k], &b = t[(k + 1) % 3];
+    least = std::min(least, to_segment(p, a, b));
+    inside = inside && (b - a).cross(p - a).dot(normal) >= 0;
   }
-  return static_cast<float>(std::sqrt(best));
+  return inside ? std::abs((p - t[0]).dot(normal)) / normal.norm() : least;
+}
+
+double brute_force(const Eigen::Vector3f& p, const mesh::mesh& m) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+    best = std::min(best, to_triangle(p.cast<double>(), mesh::corners(m, t)));
+  return best;
+}
+
+/// Distances to a mesh of one triangle, of many points about it, are those of brute force.
+void check_triangle(const std::vector<Eigen::Vector3f>& corners) {
+  const mesh::mesh m{.vertices = corners, .triangles = {{0, 1, 2}}};
+  for (const cloud::cloud& c : {uniform(50, 2, 8), uniform(20, 300, 9)}) {
+    const auto d = mesh::distances(c, m);
+    for (std::size_t i = 0; i < c.size(); ++i)
+      CHECK(d[i] == doctest::Approx(brute_force(c.points[i], m)).epsilon(1e-6));
+  }
 }
 
 /// One triangle in the plane z = 0 with legs of 4.
@@ -93,7 +119,23 @@ TEST_CASE("distances to a mesh equal brute force") {
   const mesh::mesh m = soup(700, 1);
   for (const cloud::cloud& c : {uniform(500, 6, 2), uniform(50, 1000, 3)}) {
     const auto d = mesh::distances(c, m);
-    for (std::size_t i = 0; i < c.size(); ++i) CHECK(d[i] == brute_force(c.points[i], m));
+    for (std::size_t i = 0; i < c.size(); ++i)
+      CHECK(d[i] == doctest::Approx(brute_force(c.points[i], m)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a triangle without area is its edges, whichever corners coincide or lie between") {
+  check_triangle({{-1, 0, 0}, {-1, 0, 0}, {0, -1, -1}});
+  check_triangle({{-1, 0, 0}, {0, -1, -1}, {-1, 0, 0}});
+  check_triangle({{0, -1, -1}, {-1, 0, 0}, {-1, 0, 0}});
+  check_triangle({{1, 2, 1}, {1, 2, 1}, {1, 2, 1}});
+  random_engine random(6);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<Eigen::Vector3f> on_a_line;
+    const Eigen::Vector3f along(1, i % 2 ? 0.7F : 0, i % 3 ? 0.3F : 0);
+    for (int k = 0; k < 3; ++k)
+      on_a_line.push_back(static_cast<float>(random.uniform(-1, 1)) * along);
+    check_triangle(on_a_line);
   }
 }
 

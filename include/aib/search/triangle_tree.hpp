@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -48,6 +49,26 @@ struct surface_point {
   int k = 0;  ///< which edge or corner
 };
 
+/// The point of a triangle's edges that is nearest to p.
+[[nodiscard]] inline surface_point nearest_on_edges(const Eigen::Vector3d& p,
+                                                    const std::array<Eigen::Vector3d, 3>& t) {
+  surface_point best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const Eigen::Vector3d along = t[next] - t[k];
+    const double length = along.squaredNorm();
+    const double share = length > 0 ? std::clamp(along.dot(p - t[k]) / length, 0.0, 1.0) : 0;
+    const Eigen::Vector3d q = t[k] + share * along;
+    if (!((q - p).squaredNorm() < least)) continue;
+    least = (q - p).squaredNorm();
+    best = share == 0   ? surface_point{t[k], triangle_part::corner, k}
+           : share == 1 ? surface_point{t[next], triangle_part::corner, next}
+                        : surface_point{q, triangle_part::edge, k};
+  }
+  return best;
+}
+
 /// The point of a triangle that is nearest to p. A triangle without area is treated as its edges.
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
 [[nodiscard]] inline surface_point nearest_on_triangle(const Eigen::Vector3d& p,
@@ -61,18 +82,21 @@ struct surface_point {
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d6 >= 0 && d5 <= d6) return {t[2], triangle_part::corner, 2};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
     return {t[0] + d1 / (d1 - d3) * ab, triangle_part::edge, 0};
   }
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0) {
     return {t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]), triangle_part::edge, 1};
   }
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
     return {t[0] + d2 / (d2 - d6) * ac, triangle_part::edge, 2};
   }
   const double sum = va + vb + vc;
+  // Of a triangle without area, or of a sliver far away, the three are what rounding left.
+  const double rounded = std::abs(d1 * d4) + std::abs(d3 * d6) + std::abs(d5 * d2);
+  if (!(sum > 1e-12 * rounded)) return nearest_on_edges(p, t);
   return {t[0] + vb / sum * ab + vc / sum * ac, triangle_part::face, 0};
 }
 
