@@ -249,10 +249,8 @@ record as_record(lua_State* state, const survey::flight_report& report) {
   for (const int deg : {15, 30, 45, 60, 75})
     incidence[deg] = report.seen_within(math::radians(static_cast<double>(deg)));
   cloud::cloud unseen;
-  if (!report.samples.empty()) {
-    unseen.origin =
-        cloud::natural_origin(report.samples.front().position, report.samples.front().position);
-  }
+  if (!report.samples.empty())
+    unseen.origin = cloud::natural_origin(report.samples.front().position);
   double views = 0;
   for (const survey::seen_sample& s : report.samples) {
     views += s.n_views;
