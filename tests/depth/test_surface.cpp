@@ -24,8 +24,8 @@ constexpr double focal = 80;  ///< pixels of the photo, which is twice as large 
 math::camera photo() { return math::pinhole(2 * width, 2 * height, focal, focal, width, height); }
 
 /// A plane whose normal is turned by `slant` about the y axis, `distance` from the camera.
-raster::image<float> plane(double slant, double distance) {
-  const auto rays = depth::rays(photo(), width, height);
+raster::image<float> plane(double slant, double distance, const math::camera& camera = photo()) {
+  const auto rays = depth::rays(camera, width, height);
   const Eigen::Vector3d normal(std::sin(slant), 0, std::cos(slant));
   raster::image<float> map(width, height);
   for (std::size_t i = 0; i < map.size(); ++i)
@@ -147,12 +147,13 @@ TEST_CASE("plane errors: a wall that is turned, moved and wavy; what is no plane
 }
 
 TEST_CASE("plane errors: a row of pixels is no plane, though rounded depths span one") {
-  const auto reference = plane(0.3, 10);
-  const auto estimate = plane(0.3, 11);
+  const math::camera far = math::pinhole(width, height, 4000, 4000, 32, 24);
+  const auto reference = plane(0.3, 10, far);
+  const auto estimate = plane(0.3, 11, far);
   raster::image<std::uint16_t> labels(width, height, 0);
   for (std::size_t x = 0; x < width; ++x) labels(x, height / 2) = 1;
   for (std::size_t y = 0; y < height; ++y) labels(y, y) = 2;
-  const auto rays = depth::rays(photo(), width, height);
+  const auto rays = depth::rays(far, width, height);
   CHECK(depth::plane_errors(view(estimate), view(reference), rays, view(labels)).empty());
 }
 
