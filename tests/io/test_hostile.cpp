@@ -379,6 +379,8 @@ std::vector<lie> lies() {
 #if defined(AIB_WITH_JSON)
   all.push_back({"a.glb", repeated_glb(1, 5126), mesh,
                  ": glb: indices: whole numbers expected, found floats"});
+  all.push_back({"a.glb", glb(R"({"nodes":[{"rotation":[0,0,0,0]}]})", ""), mesh,
+                 ": glb: rotation: a quaternion of length 1 expected"});
 #endif
   return all;
 }

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -170,8 +171,10 @@ class glb_reader {
     const auto t = numbers<3>(node, "translation", {0, 0, 0});
     const auto q = numbers<4>(node, "rotation", {0, 0, 0, 1});
     const auto s = numbers<3>(node, "scale", {1, 1, 1});
-    return Eigen::Translation3d(t[0], t[1], t[2]) *
-           Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized() *
+    const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+    if (!(rotation.norm() > 0) || !std::isfinite(rotation.norm()))
+      fail("rotation: a quaternion of length 1 expected");
+    return Eigen::Translation3d(t[0], t[1], t[2]) * rotation.normalized() *
            Eigen::Scaling(s[0], s[1], s[2]);
   }
 
