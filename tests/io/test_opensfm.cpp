@@ -72,7 +72,7 @@ TEST_CASE("a projection that COLMAP has not gives poses without intrinsics") {
       list(component(R"({"projection_type": "dual", "width": 4000, "height": 3000})", shot("a"))));
   CHECK(images[0].cameras.empty());
   CHECK(images[0].trajectory.warnings ==
-        std::vector<std::string>{"a projection is not known: no intrinsics are given"});
+        std::vector<std::string>{"intrinsics are known for 0 of 1 images: none are given"});
 }
 
 TEST_CASE("of several OpenSfM components the largest is read") {

@@ -78,7 +78,7 @@ TEST_CASE("an angle of view becomes a focal length where the width is known") {
   const auto without = read(text);
   CHECK(without.cameras.empty());
   CHECK(without.trajectory.warnings ==
-        std::vector<std::string>{"intrinsics are known for 0 of 1 frames: none are given"});
+        std::vector<std::string>{"intrinsics are known for 0 of 1 images: none are given"});
 }
 
 TEST_CASE("distortion chooses COLMAP's model") {

@@ -61,10 +61,8 @@ inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
                                    std::string key = {},
                                    const limits& limits = {}) {
   const npz_file file(path, limits);
-  std::string names;
   std::vector<std::string> candidates;
   for (const std::string& name : file.names()) {
-    names += (names.empty() ? "" : ", ") + name;
     if (file.is_unreadable(name)) continue;
     const auto shape = file.read_header(name).shape;
     if (shape.size() >= 2 && shape.back() == 3) candidates.push_back(name);
@@ -77,7 +75,7 @@ inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
     throw format_error(path, message("npz: ",
                                      key.empty() ? "which array holds the points?"
                                                  : message("no array \"", key, "\";"),
-                                     " There are ", names));
+                                     " There are ", file.list()));
   const array points = file.read(key);
   cloud::cloud result = cloud_of_array(points, path);
   for (const char* name : {"colors", "rgb"}) {

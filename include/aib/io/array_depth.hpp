@@ -99,8 +99,12 @@ inline raster::image<float> array_frames::frame(std::size_t i) const {
   if (i >= n) throw argument_error(message("frame ", i + 1, " of ", n, " does not exist"));
   raster::image<float> image(width, height);
   const std::size_t first = i * image.size() * components + (components - 1);
-  for (std::size_t k = 0; k < image.size(); ++k)
-    image.data()[k] = static_cast<float>(values_[first + k * components]);
+  const auto load = detail::loader(values_.type);
+  const char* from = values_.bytes.data() + first * size_of(values_.type);
+  for (float& value : image) {
+    value = static_cast<float>(load(from));
+    from += components * size_of(values_.type);
+  }
   return image;
 }
 
@@ -110,25 +114,21 @@ namespace detail {
 
 /// The array of an NPZ file that holds depth.
 inline std::string depth_member(const npz_file& file, const std::string& key) {
-  const std::vector<std::string> names = file.names();
-  const auto list = [&] {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-  };
   if (!key.empty()) {
     if (file.contains(key)) return key;
-    throw format_error(file.path(), message("npz: no array \"", key, "\"; there are ", list()));
+    throw format_error(file.path(),
+                       message("npz: no array \"", key, "\"; there are ", file.list()));
   }
   for (const char* usual : {"depth", "depths", "local_points"})
     if (file.contains(usual) && !file.is_unreadable(usual)) return usual;
   std::vector<std::string> pictures;
-  for (const std::string& name : names) {
+  for (const std::string& name : file.names()) {
     if (!file.is_unreadable(name) && file.read_header(name).shape.size() >= 2)
       pictures.push_back(name);
   }
   if (pictures.size() == 1) return pictures.front();
-  throw format_error(file.path(), message("npz: no array is called depth; name one of ", list()));
+  throw format_error(file.path(),
+                     message("npz: no array is called depth; name one of ", file.list()));
 }
 
 }  // namespace detail

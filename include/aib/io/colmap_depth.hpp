@@ -9,7 +9,6 @@
 #include <aib/io/text.hpp>
 #include <aib/raster/image.hpp>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -28,8 +27,7 @@ namespace aib::io {
 /// Source: COLMAP, mvs/mat.h.
 inline depth::depth_map read_colmap_depth(const std::filesystem::path& path) {
   const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(64);
   std::array<std::size_t, 3> size{};
   std::size_t at = 0;
   for (std::size_t& n : size) {

@@ -4,6 +4,7 @@
 
 #include <aib/core/error.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -34,6 +35,9 @@ class input_file {
 
   /// Reads exactly `n` bytes at `offset`. Throws format_error where the file ends before.
   void read_at(std::uint64_t offset, void* to, std::size_t n) const;
+
+  /// The first `n` bytes, or all where there are fewer.
+  [[nodiscard]] std::string begin(std::uint64_t n) const;
 
  private:
   struct closer {
@@ -132,15 +136,19 @@ inline void input_file::read_at(std::uint64_t offset, void* to, std::size_t n) c
   }
 }
 
+inline std::string input_file::begin(std::uint64_t n) const {
+  std::string bytes(static_cast<std::size_t>(std::min(n, size_)), '\0');
+  read_at(0, bytes.data(), bytes.size());
+  return bytes;
+}
+
 inline std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   const input_file file(path);
   if (file.size() > max_bytes) {
     throw format_error(path,
                        message("at most ", max_bytes, " bytes expected, found ", file.size()));
   }
-  std::string content(static_cast<std::size_t>(file.size()), '\0');
-  file.read_at(0, content.data(), content.size());
-  return content;
+  return file.begin(file.size());
 }
 
 inline output_file::output_file(std::filesystem::path path)

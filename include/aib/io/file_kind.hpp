@@ -4,8 +4,8 @@
 
 #include <aib/core/error.hpp>
 #include <aib/io/file.hpp>
+#include <aib/io/text.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,11 +40,7 @@ enum class file_kind {
 
 /// The extension in lower case, with its dot.
 [[nodiscard]] inline std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
+  return lower_case(path.extension().string());
 }
 
 namespace detail {
@@ -139,8 +135,7 @@ inline file_kind kind_of_extension(std::string_view extension) {
 /// Throws io_error where the file cannot be read.
 [[nodiscard]] inline file_kind kind_of(const std::filesystem::path& path) {
   const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 128)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(128);
   if (detail::is_binary_stl(begin, file.size())) return file_kind::stl;
   const file_kind kind = detail::kind_of_content(begin);
   return kind != file_kind::unknown ? kind : detail::kind_of_extension(extension_of(path));

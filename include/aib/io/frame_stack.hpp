@@ -185,9 +185,7 @@ inline void frame_stack::open_npz(const std::filesystem::path& path, const std::
 
 inline void frame_stack::open_npy(const std::filesystem::path& path) {
   const input_file file(path);
-  constexpr std::uint64_t enough = 1 << 16;
-  std::string begin(static_cast<std::size_t>(std::min(file.size(), enough)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(1 << 16);
   const detail::npy_header header = detail::read_npy_header(begin, file.size(), path);
   set_shape(header, path, path.stem().string());
   source_ = std::make_unique<plain_source>(path, header.begin);

@@ -39,11 +39,6 @@ void write_kitti(const std::filesystem::path& path, const pose::trajectory& t);
 
 namespace detail {
 
-/// The upper rows of a matrix written by rows; 12 numbers are used.
-inline pose_matrix matrix_of_rows(const std::vector<double>& numbers) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
-}
-
 inline pose::trajectory read_pose_rows(const std::filesystem::path& path,
                                        std::string_view format,
                                        std::size_t n,

@@ -53,8 +53,7 @@ inline las_header read_las_header(const input_file& file) {
     throw format_error(file.path(), message("las: ", what));
   };
   if (file.size() < smallest) refuse("the file ends within the header");
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 375)), '\0');
-  file.read_at(0, bytes.data(), bytes.size());
+  const std::string bytes = file.begin(375);
   const auto u8 = [&](std::size_t at) { return std::size_t{load<std::uint8_t>(&bytes[at])}; };
   if (!bytes.starts_with("LASF") || u8(24) != 1) refuse("not a LAS file of version 1");
   las_header header;

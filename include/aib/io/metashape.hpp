@@ -92,10 +92,9 @@ class metashape_reader {
     const pugi::xml_node transform = camera.child("transform");
     if (!transform) return unregistered_pose();
     const std::vector<double> n = numbers(transform, 16);
-    using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
     const std::string component = camera.attribute("component_id").value();
     try {
-      const math::rigid3 pose = pose_from_matrix(Eigen::Map<const rows>(n.data()));
+      const math::rigid3 pose = pose_from_matrix(matrix_of_rows(n));
       const auto world = worlds_.contains(component) ? worlds_.find(component) : worlds_.find("");
       components_.insert(component);
       if (world != worlds_.end()) return world->second * pose;
@@ -170,10 +169,7 @@ class metashape_reader {
                                  " components, which need not fit each other"));
     }
     if (left_out_) warnings.push_back("b2, k4 or p of a fisheye are left out of the intrinsics");
-    if (images.cameras.size() == images.trajectory.size()) return;
-    warnings.push_back(message("intrinsics are known for ", images.cameras.size(), " of ",
-                               images.trajectory.size(), " cameras: none are given"));
-    images.cameras.clear();
+    drop_some_cameras(images);
   }
 
   static double number(std::string_view text) {

@@ -440,17 +440,11 @@ array make_array(std::vector<std::size_t> shape, std::span<const T> values) {
 
 inline array read_npy(const std::filesystem::path& path) {
   const input_file file(path);
-  const auto part = [&](std::uint64_t offset, std::uint64_t n) {
-    std::string bytes(static_cast<std::size_t>(std::min(n, file.size() - offset)), '\0');
-    file.read_at(offset, bytes.data(), bytes.size());
-    return bytes;
-  };
-  const std::string start = part(0, 12);
-  const detail::npy_preamble preamble = detail::read_npy_preamble(start, path);
-  const std::string text = part(0, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(text, file.size(), path);
-  std::string elements =
-      part(header.begin, *detail::element_count(header.shape) * size_of(header.type));
+  const detail::npy_preamble preamble = detail::read_npy_preamble(file.begin(12), path);
+  detail::npy_header header = detail::read_npy_header(
+      file.begin(preamble.text_begin + preamble.text_size), file.size(), path);
+  std::string elements(*detail::element_count(header.shape) * size_of(header.type), '\0');
+  file.read_at(header.begin, elements.data(), elements.size());
   return detail::make_array(std::move(header), std::move(elements));
 }
 

@@ -52,6 +52,8 @@ class npz_file {
 
   /// Names of the arrays, without ".npy", in the order of the file.
   [[nodiscard]] std::vector<std::string> names() const;
+  /// The same for a message: "a, b, c".
+  [[nodiscard]] std::string list() const;
   [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
 
   /// Reads an array. Throws argument_error where there is none of that name, format_error where it
@@ -197,6 +199,12 @@ inline std::vector<std::string> npz_file::names() const {
   return names;
 }
 
+inline std::string npz_file::list() const {
+  std::string text;
+  for (const member& m : members_) text += (text.empty() ? "" : ", ") + m.name;
+  return text;
+}
+
 inline array npz_file::read(std::string_view name) const {
   const member& m = get(name);
   const std::filesystem::path inside = message(path().string(), "[", m.name, "]");
@@ -339,10 +347,8 @@ inline const npz_file::member* npz_file::find(std::string_view name) const {
 
 inline const npz_file::member& npz_file::get(std::string_view name) const {
   if (const member* m = find(name)) return *m;
-  std::string known;
-  for (const member& m : members_) known += message(known.empty() ? "" : ", ", m.name);
   throw argument_error(
-      message(path().string(), ": npz: no array '", name, "'; there are: ", known));
+      message(path().string(), ": npz: no array '", name, "'; there are: ", list()));
 }
 
 inline std::uint64_t npz_file::data_offset(const member& m) const {

@@ -95,10 +95,7 @@ inline posed_images opensfm_component(const json_node& component,
     if (camera->second) images.cameras.push_back(*camera->second);
   });
   images.trajectory = checked_trajectory(std::move(images.trajectory), path, "opensfm");
-  if (images.cameras.size() != images.trajectory.size()) {
-    images.trajectory.warnings.push_back("a projection is not known: no intrinsics are given");
-    images.cameras.clear();
-  }
+  drop_some_cameras(images);
   return images;
 }
 

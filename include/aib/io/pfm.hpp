@@ -38,9 +38,7 @@ namespace detail {
 /// The four words of the header; one blank parts the last from the pixels.
 class pfm_header {
  public:
-  explicit pfm_header(const input_file& file) : path_(file.path()) {
-    text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 256)));
-    file.read_at(0, text_.data(), text_.size());
+  explicit pfm_header(const input_file& file) : path_(file.path()), text_(file.begin(256)) {
     const std::string_view tag = word("the tag Pf");
     if (tag == "PF") fail("a gray map (Pf) expected, found colours (PF)");
     if (tag != "Pf") fail("the tag Pf expected at the begin");

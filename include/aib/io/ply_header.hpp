@@ -171,15 +171,10 @@ class ply_header_parser {
   static constexpr std::size_t max_header = std::size_t{1} << 20;
 
   void load_text() {
-    text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file_.size(), 4096)));
-    file_.read_at(0, text_.data(), text_.size());
+    text_ = file_.begin(4096);
     while (text_.find("end_header") == std::string::npos && text_.size() < max_header &&
-           text_.size() < file_.size() && text_.starts_with("ply")) {
-      const std::size_t read = text_.size();
-      text_.resize(static_cast<std::size_t>(
-          std::min<std::uint64_t>({file_.size(), max_header, std::uint64_t{4} * read})));
-      file_.read_at(read, text_.data() + read, text_.size() - read);
-    }
+           text_.size() < file_.size() && text_.starts_with("ply"))
+      text_ = file_.begin(std::min(max_header, 4 * text_.size()));
   }
 
   bool next() {

@@ -58,11 +58,10 @@ inline pose::trajectory poses_of_array(const array& matrices,
     throw format_error(path, message("poses: shape (N, 4, 4) or (N, 3, 4) expected, found ",
                                      text_of_shape(matrices.shape)));
   }
-  using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
   const std::vector<double> numbers = matrices.values<double>();
   pose::trajectory t;
   for (std::size_t i = 0; i < shape[0]; ++i) {
-    const pose_matrix m = Eigen::Map<const rows>(numbers.data() + i * shape[1] * 4);
+    const pose_matrix m = matrix_of_rows(std::span(numbers).subspan(i * shape[1] * 4));
     try {
       t.world_from_camera.push_back(pose_from_matrix(m, frame));
     } catch (const argument_error& e) {

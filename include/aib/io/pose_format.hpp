@@ -173,10 +173,7 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
                        "reconstruction.json or NPZ files expected in the folder, found none");
   }
   if (detail::is_colmap_file(path)) return pose_format::colmap;
-  constexpr std::size_t enough = 1 << 16;
-  const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), enough)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = input_file(path).begin(1 << 16);
   if (const auto format = detail::format_of_content(begin, path)) return *format;
   if (const auto format = detail::format_of_extension(path)) return *format;
   std::string names;

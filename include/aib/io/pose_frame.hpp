@@ -12,6 +12,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace aib::io {
 
@@ -29,6 +30,11 @@ struct pose_frame {
 
 /// [A | t], the upper rows of a 4 x 4 pose matrix.
 using pose_matrix = Eigen::Matrix<double, 3, 4>;
+
+/// The upper rows of a matrix written by rows, of which the first 12 numbers are used.
+[[nodiscard]] inline pose_matrix matrix_of_rows(std::span<const double> numbers) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+}
 
 /// A written rotation further than this from a rotation (Frobenius norm) is refused.
 inline constexpr double max_rotation_residual = 1e-2;

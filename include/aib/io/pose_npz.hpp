@@ -69,11 +69,9 @@ inline pose_key find_pose_key(const npz_file& file, const pose_npz_options& opti
     if (options.key.empty() ? file.contains(known.name) : options.key == known.name) return known;
   }
   if (options.key.empty()) {
-    std::string names;
-    for (const std::string& name : file.names()) names += message(names.empty() ? "" : ", ", name);
     throw argument_error(
         message(file.path().string(),
-                ": npz: no array of poses known by its name; give one as key: ", names));
+                ": npz: no array of poses known by its name; give one as key: ", file.list()));
   }
   if (!options.convention) {
     throw argument_error(message(file.path().string(), ": npz: '", options.key,

@@ -95,8 +95,7 @@ inline std::vector<Eigen::Vector3f> read_ascii_stl(const std::filesystem::path& 
   bool in_facet = false;
   while (lines.next_content()) {
     std::string_view rest = trim(lines.line());
-    std::string word(rest.substr(0, rest.find_first_of(" \t")));
-    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string word = lower_case(rest.substr(0, rest.find_first_of(" \t")));
     rest.remove_prefix(word.size());
     if (word == "vertex") {
       Eigen::Vector3f corner;
@@ -128,8 +127,7 @@ inline mesh::mesh read_stl(const std::filesystem::path& path) {
     throw format_error(
         path, message("stl: at most ", most, " triangles of 50 bytes expected, found ", file.size(),
                       " bytes"));
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 84)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(84);
   const bool is_ascii = !detail::is_binary_stl(begin, file.size()) &&
                         (begin.starts_with("solid") || begin.starts_with("SOLID"));
   return detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));

@@ -39,7 +39,7 @@ namespace aib::io {
       lines.expect(4, "row of a 4 x 4 matrix");
       rows.insert(rows.end(), lines.numbers().begin(), lines.numbers().end());
     }
-    const pose_matrix matrix = detail::matrix_of_rows(rows);
+    const pose_matrix matrix = matrix_of_rows(rows);
     const bool identity = matrix == pose_matrix::Identity();
     t.world_from_camera.push_back(lost && identity ? unregistered_pose() : lines.checked([&] {
       return pose_from_matrix(matrix, frame);

@@ -192,12 +192,7 @@ inline posed_images read_transforms(const std::filesystem::path& path,
       images.cameras.push_back(std::move(*camera));
   }
   images.trajectory = checked_trajectory(std::move(images.trajectory), path, "transforms");
-  if (images.cameras.size() != images.trajectory.size()) {
-    images.trajectory.warnings.push_back(message("intrinsics are known for ", images.cameras.size(),
-                                                 " of ", images.trajectory.size(),
-                                                 " frames: none are given"));
-    images.cameras.clear();
-  }
+  drop_some_cameras(images);
   return images;
 }
 

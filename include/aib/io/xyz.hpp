@@ -80,9 +80,9 @@ class xyz_table {
   void read_names(std::string_view line) {
     names_.clear();
     std::string name;
-    for (const char c : std::string(line) + ' ') {
+    for (const char c : lower_case(line) + ' ') {
       if (separators.find(c) == std::string_view::npos) {
-        if (c != '"') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        if (c != '"') name += c;
       } else if (!name.empty()) {
         names_.push_back(std::exchange(name, {}));
       }
