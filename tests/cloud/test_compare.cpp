@@ -56,11 +56,15 @@ TEST_CASE("what is beyond the maximum is left out and told") {
   CHECK(c.reference_beyond == 0);
 }
 
-TEST_CASE("a stray whose distance no float holds leaves no NaN") {
-  const auto c = cloud::compare(on_x({0, 1e20F}), on_x({0, 1}));
-  CHECK(std::isinf(c.accuracy));
+TEST_CASE("a stray so far away that no float holds its squared distance counts as infinite") {
+  const auto c = cloud::compare(on_x({0, 1e19F}), on_x({0, 1}));
+  CHECK(c.n_dropped == 1);
+  CHECK(c.accuracy == 0);
   CHECK(c.completeness == 0.5);
-  CHECK(c.f1_distance == 1);
+  const auto far = cloud::compare(on_x({0, 0x1p62F}), on_x({0, -0x1p62F}));
+  CHECK(far.n_dropped == 0);
+  CHECK(far.accuracy == 0x1p61);
+  CHECK(std::isfinite(far.f1_distance));
 }
 
 TEST_CASE("points that are not finite are counted over both clouds; nothing is undefined") {

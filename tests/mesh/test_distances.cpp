@@ -151,7 +151,9 @@ TEST_CASE("a mesh far from its points, in another origin, with parts that are no
   mesh::mesh m = triangle();
   m.origin = {458000, 5429000, 100};
   m.vertices.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+  m.vertices.push_back({1e19F, 0, 0});
   m.triangles.insert(m.triangles.begin(), {0, 1, 3});
+  m.triangles.push_back({0, 1, 4});
   cloud::cloud c{.points = {{1, 1, 0.5f}, {std::numeric_limits<float>::infinity(), 0, 0}}};
   c.origin = {458000, 5429000, 101};
   const auto d = mesh::distances(c, m);

@@ -8,7 +8,6 @@
 #include <aib/core/isa.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <optional>
@@ -70,10 +69,7 @@ concept distance_statistics = requires(const T& d, std::span<const double> tau) 
 
 namespace detail {
 
-inline double harmonic_mean(double a, double b) {
-  if (std::isinf(a) || std::isinf(b)) return 2 * std::min(a, b);
-  return a + b > 0 ? 2 * a * b / (a + b) : 0;
-}
+inline double harmonic_mean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
 
 }  // namespace detail
 

@@ -20,9 +20,11 @@
 
 namespace aib::cloud {
 
-/// Whether the three coordinates are finite.
+/// Whether the three coordinates are finite, and so are squared distances between such points in
+/// float: beyond 2^62 a coordinate counts as infinite.
 [[nodiscard]] inline bool is_finite(const Eigen::Vector3f& p) {
-  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+  constexpr float largest = 0x1p62F;
+  return std::abs(p.x()) <= largest && std::abs(p.y()) <= largest && std::abs(p.z()) <= largest;
 }
 
 /// Positions in double as the float points of a cloud, see origin_finder.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <aib/cloud/positions.hpp>
 #include <aib/core/error.hpp>
 #include <aib/mesh/mesh.hpp>
 #include <aib/search/triangle_tree.hpp>
@@ -15,7 +16,7 @@
 
 namespace aib::mesh {
 
-/// The triangles of a mesh whose corners are all finite.
+/// The triangles of a mesh whose corners are all finite (cloud::is_finite).
 struct finite_triangles {
   std::vector<search::corners> corners = {};
   std::vector<std::uint32_t> index = {};  ///< of each in the mesh
@@ -29,7 +30,7 @@ struct finite_triangles {
       const Eigen::Vector3f& at_a = surface.vertices[a];
       const Eigen::Vector3f& at_b = surface.vertices[b];
       const Eigen::Vector3f& at_c = surface.vertices[c];
-      if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
+      if (!cloud::is_finite(at_a) || !cloud::is_finite(at_b) || !cloud::is_finite(at_c)) continue;
       corners.emplace_back(at_a, at_b, at_c);
       index.push_back(static_cast<std::uint32_t>(t));
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <aib/cloud/origin.hpp>
+#include <aib/cloud/positions.hpp>
 #include <aib/core/error.hpp>
 #include <aib/core/executor.hpp>
 #include <aib/io/ply_positions.hpp>
@@ -81,7 +82,7 @@ void for_each_point(const cloud_file& file,
 }  // namespace detail
 
 [[nodiscard]] inline bool is_finite(const point& p) {
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  return cloud::is_finite({p[0], p[1], p[2]});
 }
 
 /// A box in float, empty until something is added.
