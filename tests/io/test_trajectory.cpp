@@ -120,7 +120,7 @@ TEST_CASE("options change how poses are read, and are refused where they do not 
   CHECK(inverse.world_from_camera[0].translation == Eigen::Vector3d(-1, -2, -3));
   CHECK(io::read_trajectory(kitti, {.names = {"a.png"}}).names[0] == "a.png");
   CHECK_THROWS_WITH_AS(io::read_trajectory(kitti, {.names = {"a", "b"}}),
-                       doctest::Contains("2 names for 1 poses"), argument_error);
+                       doctest::Contains("2 names for 1 poses"), format_error);
   CHECK_THROWS_WITH_AS(io::read_trajectory(kitti, {.key = "poses"}),
                        doctest::Contains("the option key does not fit the format kitti"),
                        argument_error);

@@ -69,8 +69,8 @@ struct trajectory_options {
 /// npy, npz           N x 4 x 4 or N x 3 x 4                     as told, opencv
 /// npz                a folder of them, one an image (CUT3R)     as told, opencv
 ///
-/// Throws io_error, format_error as the readers do; argument_error where an option does not fit the
-/// format or the number of names is not that of the poses.
+/// Throws io_error, format_error as the readers do, format_error too where there are more or fewer
+/// poses than names; argument_error where an option does not fit the format.
 [[nodiscard]] posed_images read_posed_images(const std::filesystem::path& path,
                                              const trajectory_options& options = {});
 
@@ -217,8 +217,8 @@ inline posed_images read_posed_images(const std::filesystem::path& path,
   posed_images images = detail::pose_reader(path, format, options).read();
   if (options.names.empty()) return images;
   if (options.names.size() != images.trajectory.size()) {
-    throw argument_error(message(path.string(), ": ", options.names.size(), " names for ",
-                                 images.trajectory.size(), " poses"));
+    throw format_error(message(path.string(), ": ", options.names.size(), " names for ",
+                               images.trajectory.size(), " poses"));
   }
   images.trajectory.names = options.names;
   return images;
