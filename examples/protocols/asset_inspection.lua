@@ -237,7 +237,7 @@ return aib.protocol {
     details = { kind = "flag",
       help = "also shares within 1, 2, 5 ground sampling distances, depth by strata, points by label" },
     per_frame = { kind = "flag", help = "keep the numbers of frames in the JSON, for paired comparisons" },
-    tau = { kind = "list", of = "number", unit = "m", default = { 0.02, 0.05, 0.1 },
+    tau = { kind = "list", of = "number", unit = "m", above = 0, default = { 0.02, 0.05, 0.1 },
       help = "thresholds of precision, recall and F-score" },
     min_coverage = { kind = "number", default = 0.5, min = 0, max = 1,
       help = "coverage from which a depth error can be the best" },

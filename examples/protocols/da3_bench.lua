@@ -8,7 +8,9 @@
 ---
 --- The benchmark fuses depth to a mesh and samples it at random, which cannot be repeated; this begins with a cloud.
 local aib = require "aib"
+local clouds = require "aib.evaluation.clouds"
 local drawings = require "aib.evaluation.drawings"
+local failure = require "aib.failure"
 
 --- Threshold and voxel of each data set, metres.
 local datasets <const> = {
@@ -22,7 +24,7 @@ local datasets <const> = {
 local function setting(input, name)
   if input[name] >= 0 then return input[name] end
   local dataset = datasets[input.dataset]
-  if not dataset then error(("--%s or --dataset is needed"):format(name), 0) end
+  if not dataset then failure.usage(("--%s or --dataset expected"):format(name)) end
   return dataset[name]
 end
 
@@ -40,7 +42,7 @@ return aib.protocol {
   },
   run = function(input, report)
     local threshold, voxel = setting(input, "threshold"), setting(input, "voxel")
-    local estimate, reference = aib.io.read_cloud(input.estimate), aib.io.read_cloud(input.reference)
+    local estimate, reference = clouds.read(input.estimate), clouds.read(input.reference)
     if voxel > 0 then
       estimate = aib.sample.voxel(estimate, { size = voxel, anchor = "open3d" })
       reference = aib.sample.voxel(reference, { size = voxel, anchor = "open3d" })

@@ -118,10 +118,11 @@ return aib.protocol {
   inputs = inputs {
     cameras = { kind = "path", default = "", help = "cameras of the photos, any format of poses; or --focal" },
     focal = { kind = "number", default = 0, min = 0, help = "focal length of the photos in their pixels" },
-    width = { kind = "number", default = 0, min = 0, help = "with --focal: width of the photos; 0: of the maps" },
+    width = { kind = "integer", default = 0, min = 0, help = "with --focal: width of the photos; 0: of the maps" },
     align = { kind = "choice", choices = { "none", "median", "log", "scale" }, default = "none",
       help = "scale that is fitted to each frame" },
-    tau = { kind = "list", of = "number", default = { 1, 2, 5 }, help = "multiples of the ground sampling distance" },
+    tau = { kind = "list", of = "number", default = { 1, 2, 5 }, above = 0,
+      help = "multiples of the ground sampling distance" },
   },
   run = function(input, report)
     local frames, scored, undefined, names = depth_frames.pair(input), {}, {}, {}

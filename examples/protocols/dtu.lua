@@ -12,6 +12,7 @@
 ---   numpy.savez("Plane1.npz", P=scipy.io.loadmat("Plane1.mat")["P"])
 --- Which points thinning keeps depends on its order, which the official script does not seed; here --seed does.
 local aib = require "aib"
+local clouds = require "aib.evaluation.clouds"
 local drawings = require "aib.evaluation.drawings"
 
 local function numbers_of(array)
@@ -41,11 +42,12 @@ return aib.protocol {
     plane = { kind = "path", default = "", help = "P of the table (.npz); without, all of the scan counts" },
     density = { kind = "number", unit = "mm", default = 0.2, min = 0, help = "no two points nearer; 0: not thinned" },
     patch = { kind = "number", unit = "mm", default = 60, min = 0, help = "margin of the mask's box" },
-    max_distance = { kind = "number", unit = "mm", default = 20, min = 0, help = "distances from here on are dropped" },
+    max_distance = { kind = "number", unit = "mm", default = 20, above = 0,
+      help = "distances from here on are dropped" },
     seed = { kind = "integer", default = 1, min = 0, help = "of the thinning" },
   },
   run = function(input, report)
-    local estimate, reference = aib.io.read_cloud(input.estimate), aib.io.read_cloud(input.reference)
+    local estimate, reference = clouds.read(input.estimate), clouds.read(input.reference)
     if input.density > 0 then
       estimate = aib.sample.thin(estimate, { spacing = input.density, seed = input.seed })
     end

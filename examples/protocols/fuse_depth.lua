@@ -52,7 +52,7 @@ return aib.protocol {
   inputs = {
     depth = { kind = "folder", position = 1, help = "folder of depth maps" },
     poses = { kind = "path", position = 2, help = "poses and cameras with image names, any format" },
-    out = { kind = "path", help = "PLY file to write" },
+    out = { kind = "output", help = "PLY file to write" },
     voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "edge of a voxel; 0: every point" },
     pattern = { kind = "path", default = "*", help = 'names of the depth maps, * is the image\'s stem; "*" is any' },
     scale = { kind = "number", default = 0, min = 0, help = "stored value of a metre; 0: the format's own" },
@@ -67,7 +67,6 @@ return aib.protocol {
   },
   run = function(input, report)
     local paths, names = depth_frames.files_in(input.depth, input.pattern)
-    if #names == 0 then failure.raise("io", input.depth .. ": no depth maps") end
     local confidences = input.confidence ~= "" and depth_frames.files_in(input.confidence, input.pattern)
     local frames = by_stem(aib.io.read_trajectory(input.poses), aib.io.read_cameras(input.poses))
     local out = sink(input.out, input.voxel)

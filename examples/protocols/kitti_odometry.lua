@@ -30,8 +30,8 @@ return aib.protocol {
   cite = "Geiger, Lenz, Urtasun, Are we ready for autonomous driving?, CVPR 2012",
   help = "Mean errors over the segments of the reference's path that begin every step-th frame; nothing is aligned.",
   inputs = trajectories.inputs {
-    lengths = { kind = "list", of = "number", unit = "m", default = { 100, 200, 300, 400, 500, 600, 700, 800 },
-      help = "lengths of the segments" },
+    lengths = { kind = "list", of = "number", unit = "m", above = 0, help = "lengths of the segments",
+      default = { 100, 200, 300, 400, 500, 600, 700, 800 } },
     step = { kind = "integer", default = 10, min = 1, help = "frames from one start to the next" },
   },
   run = function(input, report)

@@ -7,6 +7,7 @@
 ---   aib-lua asset_inspection BENCHMARK --shard 2/2 --json b.json
 ---   aib-lua merge a.json b.json --json all.json
 local aib = require "aib"
+local failure = require "aib.failure"
 
 --- Folder of this script; a sandbox does not tell it, but there a script is called by its path.
 local here <const> = (debug.getinfo and debug.getinfo(1, "S").source:sub(2) or arg[0]):match "^(.*)/[^/]*$" or "."
@@ -17,7 +18,7 @@ local function protocol_of(result, path)
   local load_it = name:find "^[%w_]+$" and loadfile(("%s/%s.lua"):format(here, name))
   local protocol = load_it and load_it()
   if not protocol or not protocol.finish then
-    error(("%s: no protocol '%s' whose shards can be merged"):format(path, name), 0)
+    failure.raise("format", ("%s: no protocol '%s' whose shards can be merged"):format(path, name))
   end
   return protocol
 end

@@ -60,7 +60,8 @@ return aib.protocol {
       choices = { "paper", "vggt", "posediffusion", "posediffusion_torch", "da3", "colmap", "exact" },
       help = "whose area it is: the convention is part of the number" },
     max_deg = { kind = "integer", default = 30, min = 1, max = 180, help = "end of the recall curve, degrees" },
-    tau = { kind = "list", of = "number", unit = "deg", default = { 5, 15, 30 }, help = "thresholds of RRA and RTA" },
+    tau = { kind = "list", of = "number", unit = "deg", default = { 5, 15, 30 }, above = 0, max = 180,
+      help = "thresholds of RRA and RTA" },
     worst = { kind = "integer", default = 3, min = 0, help = "worst pairs that are named" },
   },
   run = function(input, report)

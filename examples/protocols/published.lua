@@ -67,6 +67,7 @@ local function cells_of(path)
       cells[#cells + 1] = cell
     end
   end
+  if #cells == 0 then failure.raise("format", path .. ": cells expected, found none") end
   return cells
 end
 

@@ -6,14 +6,16 @@
 ---
 ---   aib-lua reconstruction estimate.ply reference.ply --tau 0.02,0.05
 local aib = require "aib"
+local clouds = require "aib.evaluation.clouds"
 local drawings = require "aib.evaluation.drawings"
+local failure = require "aib.failure"
 
 --- A mesh where the file holds one, else nil and the cloud.
 local function read_reference(path)
   local ok, mesh = pcall(aib.io.read_mesh, path)
   if ok then return mesh, nil end
   if aib.error_kind(mesh) ~= "format" then error(mesh, 0) end
-  return nil, aib.io.read_cloud(path)
+  return nil, clouds.read(path)
 end
 
 --- The estimate on the reference, where an ICP is asked for.
@@ -60,15 +62,6 @@ local function add_labels(estimate, mesh, points, options, input, report)
   end
 end
 
-local function write_curve(path, to_reference, to_estimate, high)
-  local curve = aib.cloud.curve(to_reference, to_estimate, { max = high, steps = 100 })
-  local lines = { "tau,precision,recall,f_score" }
-  for i, tau in ipairs(curve.tau) do
-    lines[i + 1] = ("%.9g,%.9g,%.9g,%.9g"):format(tau, curve.precision[i], curve.recall[i], curve.f_score[i])
-  end
-  aib.system.write_text(path, table.concat(lines, "\n") .. "\n")
-end
-
 --- Clouds in the colours of their errors, the faces of a mesh in those of its completeness, curves.
 local function write_errors(estimate, mesh, points, input)
   local to_reference = mesh and aib.mesh.distances(estimate, mesh) or aib.cloud.distances(estimate, points)
@@ -76,13 +69,9 @@ local function write_errors(estimate, mesh, points, input)
   local high = math.max(1e-9, to_reference:quantile(0.95), to_estimate:quantile(0.95))
   if #input.tau > 0 then high = 3 * math.max(table.unpack(input.tau)) end
   aib.system.make_folder(input.errors_to)
-  local function write(name, cloud, errors)
-    aib.io.write_cloud(("%s/%s.ply"):format(input.errors_to, name), aib.cloud.colored(cloud, errors, { max = high }),
-      { scalars = { error = errors } })
-  end
-  write("accuracy", estimate, to_reference)
-  write("completeness", points, to_estimate)
-  write_curve(input.errors_to .. "/curve.csv", to_reference, to_estimate, high)
+  clouds.write_colored(input.errors_to .. "/accuracy.ply", estimate, to_reference, high)
+  clouds.write_colored(input.errors_to .. "/completeness.ply", points, to_estimate, high)
+  clouds.write_curve(input.errors_to .. "/curve.csv", to_reference, to_estimate, high, 100)
   if not mesh then return end
   local faces = aib.mesh.face_scores(estimate, mesh, { samples = points, tau = high / 3 })
   aib.io.write_mesh(input.errors_to .. "/faces.ply", mesh, {
@@ -109,19 +98,33 @@ end
 
 local function search_options(input)
   local options = { tau = input.tau, rule = input.rule }
-  if input.max_distance > 0 then options.max_distance = input.max_distance end
+  if input.max_distance == 0 then return options end
+  for _, tau in ipairs(input.tau) do
+    if tau > input.max_distance then failure.usage(("--tau: at most --max-distance expected, found %g"):format(tau)) end
+  end
+  options.max_distance = input.max_distance
   return options
+end
+
+--- What the comparison on disk cannot do, and how it is when it is not asked for.
+local unused_on_disk <const> = { voxel = 0, icp = 0, normals = false, labels = false, errors_to = "" }
+
+local units_of_memory <const> = { [""] = true, B = true, KB = true, MB = true, GB = true }
+
+local function check_memory(text)
+  local number, unit = text:match "^(%d+%.?%d*) *(%a*)$"
+  if number and tonumber(number) > 0 and units_of_memory[unit:upper()] then return end
+  failure.usage(("--memory: a size as 2GB or 500MB expected, found '%s'"):format(text))
 end
 
 --- The comparison of files that are larger than memory.
 local function compared_on_disk(input)
-  for _, name in ipairs { "voxel", "icp" } do
-    if input[name] > 0 then error(("--memory: --%s needs the clouds in memory"):format(name), 0) end
+  check_memory(input.memory)
+  for name, unused in pairs(unused_on_disk) do
+    if input[name] ~= unused then
+      failure.usage(("--memory: --%s needs the clouds in memory"):format(name:gsub("_", "-")))
+    end
   end
-  for _, name in ipairs { "normals", "labels" } do
-    if input[name] then error(("--memory: --%s needs the clouds in memory"):format(name), 0) end
-  end
-  if input.errors_to ~= "" then error("--memory: --errors-to needs the clouds in memory", 0) end
   local progress <close> = aib.progress(100, "%")
   local options, told = search_options(input), 0
   options.memory = input.memory
@@ -141,7 +144,8 @@ return aib.protocol {
   inputs = {
     estimate = { kind = "file", position = 1, help = "reconstructed cloud" },
     reference = { kind = "file", position = 2, help = "cloud or mesh of the truth" },
-    tau = { kind = "list", of = "number", unit = "m", default = {}, help = "thresholds of precision, recall, F-score" },
+    tau = { kind = "list", of = "number", unit = "m", default = {}, above = 0,
+      help = "thresholds of precision, recall, F-score" },
     max_distance = { kind = "number", unit = "m", default = 0, min = 0, help = "cuts distances from here on; 0: none" },
     rule = { kind = "choice", choices = { "drop", "clamp" }, default = "drop", help = "what becomes of them" },
     voxel = { kind = "number", unit = "m", default = 0, min = 0, help = "thins both clouds to a point each; 0: not" },
@@ -155,7 +159,7 @@ return aib.protocol {
   },
   run = function(input, report)
     if input.memory ~= "" then return add_comparison(compared_on_disk(input), input, report) end
-    local estimate = aib.io.read_cloud(input.estimate)
+    local estimate = clouds.read(input.estimate)
     local mesh, points = read_reference(input.reference)
     if mesh then
       local info
@@ -167,6 +171,9 @@ return aib.protocol {
       points = aib.sample.voxel(points, { size = input.voxel })
     end
     estimate = aligned(estimate, points, input, report)
+    if input.labels and not points.has_labels then
+      failure.raise("format", input.reference .. ": --labels: labels expected, found none")
+    end
     local options = search_options(input)
     if mesh then options.samples = points end
     local compared = mesh and aib.mesh.compare(estimate, mesh, options) or aib.cloud.compare(estimate, points, options)

@@ -10,7 +10,10 @@
 --- The official RANSAC is not seeded; this one is (--seed). Where precision and recall are 0 the official script
 --- divides by zero; here the F-score is 0.
 local aib = require "aib"
+local clouds = require "aib.evaluation.clouds"
 local drawings = require "aib.evaluation.drawings"
+local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 --- Thresholds of the scenes, metres.
 local scenes <const> = {
@@ -22,7 +25,7 @@ local scenes <const> = {
 local function read_transform(path)
   local m = {}
   for number in aib.system.read_text(path):gmatch("%S+") do m[#m + 1] = tonumber(number) end
-  if #m ~= 16 then error(("%s: 16 numbers expected, found %d"):format(path, #m), 0) end
+  if #m ~= 16 then failure.raise("format", ("%s: 16 numbers expected, found %d"):format(path, #m)) end
   local scale = (m[1] ^ 2 + m[5] ^ 2 + m[9] ^ 2) ^ 0.5
   local function row(i) return { m[i] / scale, m[i + 1] / scale, m[i + 2] / scale } end
   return aib.math.sim3 { scale = scale, rotation = { row(1), row(5), row(9) }, translation = { m[4], m[8], m[12] } }
@@ -31,6 +34,7 @@ end
 --- ref_from_est of the trajectories; nothing is moved where there are none.
 local function from_trajectories(input, report)
   if input.trajectory == "" then return aib.math.sim3() end
+  if input.reference_trajectory == "" then failure.usage("--reference-trajectory expected beside --trajectory") end
   local est = aib.io.read_trajectory(input.trajectory)
   local ref = aib.io.read_trajectory(input.reference_trajectory)
   if input.reference_transform ~= "" then ref = read_transform(input.reference_transform) * ref end
@@ -70,22 +74,21 @@ end
 
 local function write_errors(folder, estimate, reference, to_reference, to_estimate, tau)
   aib.system.make_folder(folder)
-  local function write(name, cloud, errors)
-    aib.io.write_cloud(("%s/%s.ply"):format(folder, name), aib.cloud.colored(cloud, errors, { max = 3 * tau }),
-      { scalars = { error = errors } })
-  end
-  write("precision", estimate, to_reference)
-  write("recall", reference, to_estimate)
-  local curve = aib.cloud.curve(to_reference, to_estimate, { max = 5 * tau, steps = 500 })
-  local lines = { "tau,precision,recall,f_score" }
-  for i = 1, #curve.tau do
-    lines[i + 1] = ("%.9g,%.9g,%.9g,%.9g"):format(curve.tau[i], curve.precision[i], curve.recall[i], curve.f_score[i])
-  end
-  aib.system.write_text(folder .. "/curve.csv", table.concat(lines, "\n") .. "\n")
+  clouds.write_colored(folder .. "/precision.ply", estimate, to_reference, 3 * tau)
+  clouds.write_colored(folder .. "/recall.ply", reference, to_estimate, 3 * tau)
+  clouds.write_curve(folder .. "/curve.csv", to_reference, to_estimate, 5 * tau, 500)
 end
 
-local names <const> = {}
-for name in pairs(scenes) do names[#names + 1] = name end
+--- The crop volume of a JSON file; nil without one.
+local function read_volume(path)
+  if path == "" then return nil end
+  local volume = aib.json.decode(aib.system.read_text(path), path)
+  local ok, mistake = pcall(aib.cloud.crop, aib.cloud.from_points {}, volume)
+  if not ok then failure.raise("format", ("%s: %s"):format(path, failure.message(mistake))) end
+  return volume
+end
+
+local names <const> = suggest.keys(scenes)
 names[#names + 1] = "other"
 table.sort(names)
 
@@ -111,10 +114,10 @@ return aib.protocol {
   },
   run = function(input, report)
     local tau = input.tau > 0 and input.tau or scenes[input.scene]
-    if not tau then error("--scene or --tau is needed", 0) end
-    local volume = input.crop ~= "" and aib.json.decode(aib.system.read_text(input.crop), input.crop)
+    if not tau then failure.usage("--scene or --tau expected") end
+    local volume = read_volume(input.crop)
     local function crop(cloud) return volume and aib.cloud.crop(cloud, volume) or cloud end
-    local estimate, reference = aib.io.read_cloud(input.estimate), aib.io.read_cloud(input.reference)
+    local estimate, reference = clouds.read(input.estimate), clouds.read(input.reference)
     local transform = from_trajectories(input, report)
     if input.icp == "official" then
       transform = refined(estimate, reference, transform, tau, crop, input, report)

@@ -12,6 +12,8 @@
 ---   aib-lua telemetry truth/transforms.json --write priors
 ---   aib-lua telemetry truth/transforms.json --runs 'results/{run}/sparse/0'
 local aib = require "aib"
+local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 --- What can be swept: options of aib.survey.perturb for a value, and its unit (of poses without stamps: per frame).
 local kinds <const> = {
@@ -36,17 +38,13 @@ local metrics <const> = {
 local rounding <const> = 1e-9  -- errors below are none
 
 local function sweep_of(text, truth)
+  local function wrong(sentence) failure.usage("--sweep: " .. sentence) end
   local kind, values = text:match "^([%w_]+)=(.+)$"
-  if not kinds[kind or ""] then
-    local known = {}
-    for name in pairs(kinds) do known[#known + 1] = name end
-    table.sort(known)
-    error(("sweep: KIND=VALUE:VALUE... expected, found '%s'%s"):format(text,
-      kind and aib.system.suggestion(kind, known) or ""), 0)
-  end
+  if not kind then wrong(("KIND=VALUE:VALUE... expected, found '%s'"):format(text)) end
+  if not kinds[kind] then wrong(("unknown kind '%s'%s"):format(kind, suggest.hint(kind, suggest.keys(kinds)))) end
   local levels = {}
-  for word in values:gmatch "[^:]+" do
-    levels[#levels + 1] = tonumber(word) or error(("sweep: a number expected, found '%s' in %s"):format(word, text), 0)
+  for word in (values .. ":"):gmatch "([^:]*):" do
+    levels[#levels + 1] = tonumber(word) or wrong(("a number expected, found '%s' in %s"):format(word, text))
   end
   table.sort(levels)
   return { kind = kind, levels = levels, unit = #truth.stamps == 0 and kinds[kind].per_frame or kinds[kind].unit }
@@ -183,8 +181,10 @@ end
 local function sweep_all(input, report)
   local truth = aib.io.read_trajectory(input.truth)
   local estimate = input.estimate ~= "" and aib.io.read_trajectory(input.estimate) or nil
-  for _, text in ipairs(input.sweep) do
-    local sweep, by_level = sweep_of(text, truth), {}
+  local sweeps = {}
+  for i, text in ipairs(input.sweep) do sweeps[i] = sweep_of(text, truth) end
+  for _, sweep in ipairs(sweeps) do
+    local by_level = {}
     for k, level in ipairs(sweep.levels) do
       local name = ("%g %s"):format(level, sweep.unit)
       local cell = report:within { sweep = sweep.kind, level = name }

@@ -6,6 +6,7 @@
 ---   aib-lua trajectory --estimate orb.txt,dso.txt --reference truth.txt --align sim3
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
+local failure = require "aib.failure"
 local trajectories = require "aib.trajectories"
 
 local statistics <const> = { "rmse", "mean", "median", "std", "min", "max" }
@@ -63,7 +64,7 @@ return aib.protocol {
     stand_off = { kind = "number", unit = "m", default = 10, min = 0,
       help = "align: distance at which the error of a turn is foretold" },
     relation = { kind = "choice", choices = relations, default = "translation", help = "what of a motion counts" },
-    delta = { kind = "number", default = 1, help = "how far apart the poses of a relative error are" },
+    delta = { kind = "number", default = 1, above = 0, help = "how far apart the poses of a relative error are" },
     unit = { kind = "choice", choices = { "frames", "m", "deg", "rad" }, default = "frames", help = "of delta" },
     all_pairs = { kind = "flag", help = "relative errors from every pose, not one pair after another" },
     pairs_from = { kind = "choice", choices = { "estimate", "reference" }, default = "estimate",
@@ -71,6 +72,9 @@ return aib.protocol {
     tolerance = { kind = "number", default = 0.1, min = 0, help = "all pairs: share of delta that a pair may miss" },
   },
   run = function(input, report)
+    if input.unit == "frames" and not math.tointeger(input.delta) then
+      failure.usage(("--delta: a whole number of frames expected, found %s"):format(input.delta))
+    end
     for estimate in trajectories.each(input, report) do score(estimate, input) end
     local aligned = input.align == "none" and "not aligned" or input.align .. " aligned"
     local whole = { { "n_matched", label = "pairs" }, { "path_length", label = "path" }, "duration",

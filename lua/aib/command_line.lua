@@ -4,6 +4,7 @@
 --- The command line of a protocol: parsing, --help, and where its results go.
 local aib = require "aib"
 local inputs = require "aib.inputs"
+local number = require "aib.report.number"
 local suggest = require "aib.suggest"
 local text = require "aib.report.text"
 
@@ -84,12 +85,7 @@ function parser:common_option(key, value)
     self.call.threads = inputs.value(threads, value or self:next_value(key), wrong)
     return
   end
-  local path = inputs.value({ key = key, kind = "path" }, value or self:next_value(key), wrong)
-  local folder = path:match("^(.*)/[^/]*$")
-  if folder == "" then folder = "/" end
-  if folder and not aib.system.is_folder(folder) then wrong(("--%s: %s: no such folder"):format(key, folder)) end
-  if aib.system.is_folder(path) then wrong(("--%s: %s: a file expected, found a folder"):format(key, path)) end
-  self.call.outputs[key] = path
+  self.call.outputs[key] = inputs.value({ key = key, kind = "output" }, value or self:next_value(key), wrong)
 end
 
 --- Gives the arguments without a name to the places that no option has filled, in their order. The first list among
@@ -110,7 +106,8 @@ function parser:fill_places()
     end
   end
   if not self.unnamed[at + 1] then return end
-  wrong(("%d arguments at most expected, found '%s' beside them"):format(at, self.unnamed[at + 1]))
+  local most = at == 0 and "no argument" or number.count(at, "argument") .. " at most"
+  wrong(("%s expected, found '%s' too"):format(most, self.unnamed[at + 1]))
 end
 
 function parser:run()
@@ -162,7 +159,8 @@ local function value_name(input)
   if input.kind == "choice" then return " " .. table.concat(input.choices, "|") end
   if input.kind == "list" then return " A,B,..." end
   if input.kind == "integer" then return " N" end
-  if input.kind == "number" then return " X" .. (input.unit and input.unit or "") end
+  if input.kind == "number" then return " X" .. (input.unit or "") end
+  if input.kind == "output" then return " FILE" end
   return " " .. input.kind:upper()
 end
 
@@ -186,13 +184,16 @@ end
 --- The text of --help.
 function M.help(protocol)
   local usage = { "usage: aib-lua " .. protocol.name .. " [options]" }
+  for _, input in ipairs(protocol.inputs) do
+    if not input.place and input.default == nil then usage[#usage + 1] = inputs.label(input) .. value_name(input) end
+  end
   for _, input in ipairs(in_places(protocol)) do
     local label = inputs.label(input) .. (input.kind == "list" and "..." or "")
     usage[#usage + 1] = input.default == nil and label or "[" .. label .. "]"
   end
   local out = { table.concat(usage, " "), "" }
   if protocol.help then
-    table.move(text.wrapped(protocol.help, 79), 1, #text.wrapped(protocol.help, 79), #out + 1, out)
+    for _, line in ipairs(text.wrapped(protocol.help, 79)) do out[#out + 1] = line end
     out[#out + 1] = ""
   end
   for _, input in ipairs(in_places(protocol)) do

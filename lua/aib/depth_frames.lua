@@ -9,6 +9,7 @@
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -34,8 +35,10 @@ function M.inputs(own)
     masks = { kind = "path", default = "", help = "folder of gray PNGs of the same names; 0 leaves a pixel out" },
     rule = { kind = "choice", choices = { "centre", "floor" }, default = "centre",
       help = "pixel of a reference that stands for one of a smaller estimate" },
-    per_frame = { kind = "path", default = "", help = "CSV file to write: the errors of each frame, the worst first" },
-    sheet = { kind = "path", default = "", help = "PNG file to write: estimate, truth, error of the worst frames" },
+    per_frame = { kind = "output", default = "",
+      help = "CSV file to write: the errors of each frame, the worst first" },
+    sheet = { kind = "output", ending = ".png", default = "",
+      help = "PNG file to write: estimate, truth, error of the worst frames" },
     worst = { kind = "integer", default = 6, min = 1, help = "frames on it" },
     worst_by = { kind = "choice", choices = M.fields, default = "srmse", help = "error that says which are the worst" },
   }
@@ -55,7 +58,8 @@ local function name_in(pattern, file)
   return fits and file:sub(#before + 1, #file - #after) or nil
 end
 
---- Paths of the files that fit, by the name of their frame, and the names in the order of the files.
+--- Paths of the files that fit, by the name of their frame, and the names in the order of the files. Raises an io error
+--- where there is none.
 function M.files_in(folder, pattern)
   local paths, names = {}, {}
   for _, file in ipairs(aib.system.names_in(folder)) do
@@ -64,6 +68,10 @@ function M.files_in(folder, pattern)
       if not paths[name] then names[#names + 1] = name end
       paths[name] = folder .. "/" .. file
     end
+  end
+  if #names == 0 then
+    local wanted = pattern == "*" and table.concat(suggest.keys(extensions), ", ") or pattern
+    failure.raise("io", ("%s: no depth map (%s)"):format(folder, wanted))
   end
   return paths, names
 end

@@ -23,11 +23,25 @@ function M.kind(caught) return aib.error_kind(tostring(caught)) end
 --- Whether an error value says that there was no memory left.
 function M.is_memory(caught) return tostring(caught):find("not enough memory$") ~= nil end
 
---- The text of an error value without the script position in front of it.
+local positions <const> = { "^([^\n:]+%.lua:%d+): (.*)", '^(%[string "[^"\n]*"%]:%d+): (.*)' }
+
+--- The text of an error value without the script position in front of it, and that, nil where there is none.
 function M.message(caught)
   local text = tostring(caught)
-  if plain[text] then return text end
-  return text:match("^[^\n:]+%.lua:%d+: (.*)") or text:match('^%[string "[^"\n]*"%]:%d+: (.*)') or text
+  for _, pattern in ipairs(plain[text] and {} or positions) do
+    local position, message = text:match(pattern)
+    if message then return message, position end
+  end
+  return text
+end
+
+local latest = {}
+
+--- The trace of an error value from where it began, though it was caught and raised again since. To be called in the
+--- message handlers of all who do that.
+function M.trace(caught)
+  if latest.value ~= caught then latest = { value = caught, trace = debug.traceback(tostring(caught), 3) } end
+  return latest.trace
 end
 
 --- Raises an error of the command line, which ends a protocol with exit code 2.

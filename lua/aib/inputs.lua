@@ -4,10 +4,12 @@
 --- Typed inputs of a protocol: how each kind is read from a command line, checked, and shown in --help.
 ---
 --- An input is
----   kind      "text" | "path" | "file" | "folder" | "number" | "integer" | "choice" | "list" | "flag"
+---   kind      "text" | "path" | "file" | "folder" | "output" | "number" | "integer" | "choice" | "list" | "flag"
 ---   default   value where none is given; an input without one has to be given (a flag is false)
 ---   unit      of a number: one of another unit of that kind is converted ("5cm" where the unit is "m")
 ---   min, max  bounds of a number, both allowed
+---   above     a bound that is not: 0 of lengths that have to be there
+---   ending    of an output: ".png"
 ---   choices   names of a choice
 ---   of        kind of a list's elements (default "path")
 ---   position  1, 2, ...: also given by place; inputs that have to be given are, by name, where none says so
@@ -19,8 +21,8 @@ local system = require("aib").system
 local M = {}
 
 local fields <const> = {
-  kind = true, default = true, unit = true, min = true, max = true, choices = true, of = true, position = true,
-  help = true,
+  kind = true, default = true, unit = true, min = true, max = true, above = true, choices = true, of = true,
+  ending = true, position = true, help = true,
 }
 
 local units <const> = {
@@ -46,7 +48,9 @@ local read = {}
 function read.number(text, input)
   local digits, unit = text:match("^%s*([+-]?[%d.]+[eE]?[+-]?%d*)%s*(%a*)%s*$")
   local x = digits and tonumber(digits)
-  if not x then return nil, "a number" .. (input.unit and " in " .. input.unit or "") .. " expected" end
+  if not x or math.abs(x) == math.huge then
+    return nil, "a number" .. (input.unit and " in " .. input.unit or "") .. " expected"
+  end
   if unit == "" then return x end
   local scale = input.unit and factor(unit, input.unit)
   if not scale then
@@ -65,7 +69,7 @@ function read.path(text)
   if text == "" then return nil, "a path expected" end
   return text
 end
-read.file, read.folder = read.path, read.path
+read.file, read.folder, read.output = read.path, read.path, read.path
 
 function read.text(text) return text end
 
@@ -79,21 +83,25 @@ end
 
 --- Types of values that a script or a default gives.
 local lua_types <const> = {
-  number = "number", integer = "number", path = "string", file = "string", folder = "string", choice = "string",
-  flag = "boolean", list = "table", text = "string",
+  number = "number", integer = "number", path = "string", file = "string", folder = "string", output = "string",
+  choice = "string", flag = "boolean", list = "table", text = "string",
 }
 
---- Checks of a value, whether it came as text or from Lua. Each gives nothing, or what was expected. A file that is
---- not there is an error of its own kind: the input is bad, not the call.
+--- Checks of a value, whether it came as text or from Lua. Each gives nothing, or what was expected and found. A file
+--- that is not there is an error of its own kind: the input is bad, not the call.
 local check = {}
 
+local function refusal(expected, value) return ("%s expected, %s"):format(expected, found(value)) end
+
 function check.number(x, input)
-  if input.min and x < input.min then return ("at least %s expected"):format(input.min) end
-  if input.max and x > input.max then return ("at most %s expected"):format(input.max) end
+  if x ~= x then return refusal("a number", x) end
+  if input.min and x < input.min then return refusal(("at least %s"):format(input.min), x) end
+  if input.above and x <= input.above then return refusal(("more than %s"):format(input.above), x) end
+  if input.max and x > input.max then return refusal(("at most %s"):format(input.max), x) end
 end
 
 function check.integer(x, input)
-  if not math.tointeger(x) then return "an integer expected" end
+  if not math.tointeger(x) then return refusal("an integer", x) end
   return check.number(x, input)
 end
 
@@ -101,29 +109,43 @@ function check.choice(name, input)
   for _, choice in ipairs(input.choices) do
     if name == choice then return end
   end
-  return ("one of %s expected"):format(table.concat(input.choices, ", ")), suggest.hint(name, input.choices)
+  return refusal("one of " .. table.concat(input.choices, ", "), name) .. suggest.nearest(name, input.choices)
 end
 
 function check.path(path)
-  if path:find("\0", 1, true) then return "a path expected" end
+  if path:find("\0", 1, true) then return refusal("a path", path) end
 end
 
 function check.file(path)
-  local wrong = check.path(path)
-  if wrong then return wrong end
+  local mistake = check.path(path)
+  if mistake then return mistake end
   if system.is_folder(path) then failure.raise("io", path .. ": a file expected, found a folder") end
   if not system.is_file(path) then failure.raise("io", path .. ": no such file") end
 end
 
 function check.folder(path)
-  local wrong = check.path(path)
-  if wrong then return wrong end
+  local mistake = check.path(path)
+  if mistake then return mistake end
   if system.is_file(path) then failure.raise("io", path .. ": a folder expected, found a file") end
   if not system.is_folder(path) then failure.raise("io", path .. ": no such folder") end
 end
 
-local function elements(input) return { kind = input.of or "path", unit = input.unit, min = input.min, max = input.max,
-  choices = input.choices } end
+--- A file that can be written when the work is done; "" is none.
+function check.output(path, input)
+  local mistake = check.path(path)
+  if mistake or path == "" then return mistake end
+  local folder = path:match("^(.*)/[^/]*$")
+  if folder == "" then folder = "/" end
+  if folder and not system.is_folder(folder) then return folder .. ": no such folder" end
+  if system.is_folder(path) then return path .. ": a file expected, found a folder" end
+  local ending = input.ending or ""
+  if path:sub(#path - #ending + 1):lower() ~= ending then return refusal("a name that ends in " .. ending, path) end
+end
+
+local function elements(input)
+  return { kind = input.of or "path", unit = input.unit, min = input.min, max = input.max, above = input.above,
+    choices = input.choices, ending = input.ending }
+end
 
 --- The value after the checks of its kind. Calls `wrong(sentence)` where it is not one.
 local function checked(value, input, wrong)
@@ -135,8 +157,8 @@ local function checked(value, input, wrong)
     for i, element in ipairs(value) do list[i] = checked(element, elements(input), wrong) end
     return list
   end
-  local expected = check[input.kind] and check[input.kind](value, input)
-  if expected then wrong(("%s, %s"):format(expected, found(value))) end
+  local mistake = check[input.kind] and check[input.kind](value, input)
+  if mistake then wrong(mistake) end
   return input.kind == "integer" and math.tointeger(value) or value
 end
 
@@ -153,8 +175,8 @@ local function parsed(text, input, wrong)
 end
 
 local field_types <const> = {
-  kind = "string", unit = "string", min = "number", max = "number", choices = "table", of = "string",
-  position = "number", help = "string",
+  kind = "string", unit = "string", min = "number", max = "number", above = "number", choices = "table", of = "string",
+  ending = "string", position = "number", help = "string",
 }
 
 local function mistake_in_kind(kind)
@@ -198,6 +220,17 @@ function M.declare(key, input, level)
   return copy
 end
 
+--- Those with a place in the order of their places, then the others: what is missing is told in the order of --help.
+local function as_told(inputs)
+  local list = table.move(inputs, 1, #inputs, 1, {})
+  table.sort(list, function(a, b)
+    if a.place and b.place then return a.place < b.place end
+    if a.place or b.place then return a.place ~= nil end
+    return a.key < b.key
+  end)
+  return list
+end
+
 --- The values of a run from Lua values by name; defaults where there is none. `wrong(sentence)` raises.
 function M.complete(inputs, values, wrong)
   local known = {}
@@ -205,7 +238,7 @@ function M.complete(inputs, values, wrong)
   local mistake = suggest.unknown_key(values, known)
   if mistake then wrong((mistake:gsub("^unknown field", "unknown input"))) end
   local out = {}
-  for _, input in ipairs(inputs) do
+  for _, input in ipairs(as_told(inputs)) do
     local value = values[input.key]
     if value == nil then value = input.default end
     if value == nil then

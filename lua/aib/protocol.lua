@@ -56,6 +56,8 @@ local function check_spec(spec, level)
   if not spec.run then error("aib.protocol: run: a function expected", level + 1) end
 end
 
+local lies_elsewhere <const> = { folder = true, path = true, output = true }
+
 --- Files are told by their name and content in a report, folders not at all: the numbers do not depend on where they
 --- lie.
 local function state_inputs(report, list, values)
@@ -76,9 +78,11 @@ local function state_inputs(report, list, values)
         value = state_file(value)
       end
     end
-    if kind ~= "folder" and kind ~= "path" then report.store.inputs[input.key] = value end
-    local lies_elsewhere = input.default == nil and (kind == "folder" or kind == "path")
-    if lies_elsewhere then table.insert(report.store.places, inputs.label(input)) end
+    if not lies_elsewhere[kind] then
+      report.store.inputs[input.key] = value
+    elseif input.default == nil then
+      table.insert(report.store.places, inputs.label(input))
+    end
   end
 end
 
@@ -97,19 +101,27 @@ end
 
 local function print_error(text) io.stderr:write(text, "\n") end
 
-local function traced(value) return { value = value, trace = debug.traceback(tostring(value), 2) } end
+local function traced(value) return { value = value, trace = failure.trace(value) } end
 
---- Says what went wrong: a sentence, and a trace for mistakes of the script. Returns the exit code.
+--- Of which kinds of errors a sentence is told; of the others, which are mistakes of the script, the trace.
+local sentence_of_kind <const> = { io = true, format = true, output = true, argument = true, stopped = true }
+
+--- Says what went wrong; of what the library refused, with the line of the script. Returns the exit code.
 local function explain(self, caught)
   if type(caught) == "string" then caught = { value = caught, trace = caught } end  -- Lua had no memory for the trace
   if type(caught.value) == "table" and caught.value.usage then
     print_error(("%s: %s (see --help)"):format(self.name, caught.value.usage))
     return exit.usage
   end
-  local code = exit_of_kind[failure.kind(caught.value)]
-  local needs_trace = not code and not failure.is_memory(caught.value) and failure.kind(caught.value) ~= "output"
-  print_error(needs_trace and caught.trace or self.name .. ": " .. failure.message(caught.value))
-  return code or exit.script
+  local kind = failure.kind(caught.value)
+  if sentence_of_kind[kind] or failure.is_memory(caught.value) then
+    local sentence, position = failure.message(caught.value)
+    local where = kind == "argument" and position and (" (%s)"):format(position) or ""
+    print_error(self.name .. ": " .. sentence .. where)
+  else
+    print_error(caught.trace)
+  end
+  return exit_of_kind[kind] or exit.script
 end
 
 --- Runs the protocol as a program. Returns the exit code: 0 ok, 1 it failed or its results cannot be written, 2 the

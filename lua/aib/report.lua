@@ -88,11 +88,16 @@ local function check_options(name, options, level)
   end
 end
 
+local function keep_trace(caught)
+  if failure.kind(caught) ~= "undefined" then failure.trace(caught) end
+  return caught
+end
+
 --- The result of a function, or nil and the reason where what it computes is undefined (no valid pixel, no pair);
 --- `what` is noted then. Other errors pass.
 ---   local errors = report:attempt(function() return aib.depth.errors(est, ref) end, "depth")
 function report:attempt(compute, what)
-  local ok, result = pcall(compute)
+  local ok, result = xpcall(compute, keep_trace)
   if ok then return result end
   if failure.kind(result) ~= "undefined" then error(result, 0) end
   local reason = failure.message(result)

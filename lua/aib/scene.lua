@@ -14,6 +14,7 @@
 ---   local scene = aib.scene.open { folder = "office", poses = "transforms.json", depth = "depth/{stem}.exr" }
 ---   for _, name in ipairs(scene.names) do local depth = scene.depth(name) end
 local aib = require "aib"
+local clouds = require "aib.evaluation.clouds"
 local failure = require "aib.failure"
 local suggest = require "aib.suggest"
 
@@ -25,11 +26,7 @@ local fields <const> = {
 }
 
 --- Reads a point cloud that has points. Raises a format error where it has none.
-function M.read_cloud(files, name)
-  local cloud = aib.io.read_cloud(files:file(name))
-  if #cloud == 0 then failure.raise("format", files:path(name) .. ": points expected, found none") end
-  return cloud
-end
+function M.read_cloud(files, name) return clouds.read(files:file(name)) end
 
 --- What a scene reads when it is first asked for.
 local readers = {}

@@ -17,6 +17,9 @@ end
 --- What to add to "unknown X 'name'": the nearest of the names (a list), or all of them.
 function M.hint(name, names) return system.suggestion(tostring(name), names) end
 
+--- ", did you mean 'X'?" where one of the names is near: what to add to a sentence that lists them.
+function M.nearest(name, names) return M.hint(name, names):match("^, did you mean.*") or "" end
+
 --- The sentence for the first key of `t` that `known` (a table by name) has not; nil where it has all.
 function M.unknown_key(t, known)
   for _, key in ipairs(M.keys(t)) do

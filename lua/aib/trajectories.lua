@@ -8,6 +8,7 @@
 ---     estimate.cell:add("ape", function() return aib.pose.ape(est, ref).rmse end, { unit = "m" })
 ---   end
 local aib = require "aib"
+local failure = require "aib.failure"
 
 local M = {}
 
@@ -53,7 +54,20 @@ local function read(path, input, whose)
     local value = input[whose .. "_" .. name]
     if value ~= "stored" and value ~= "" then options[name] = value end
   end
-  return aib.io.read_trajectory(path, options)
+  local ok, found = pcall(aib.io.read_trajectory, path, options)
+  if ok then return found end
+  if failure.kind(found) == "argument" then failure.usage(("%s: %s"):format(whose, failure.message(found))) end
+  error(found, 0)
+end
+
+local list_of <const> = { stamp = "stamps", name = "names" }
+
+--- Raises a format error where poses lack what is to pair them.
+local function check_pairing(trajectory, path, by)
+  local list = list_of[by]
+  if list and #trajectory[list] == 0 then
+    failure.raise("format", ("%s: --by %s: %s expected, found poses without"):format(path, by, list))
+  end
 end
 
 local function way_of_pairing(est, ref, by)
@@ -80,7 +94,9 @@ local function names_rule(est, ref, asked)
 end
 
 --- The pairs of a trajectory and the reference, noted in the report's cell; nil where there is none.
-local function associated(trajectory, reference, input, cell)
+local function associated(trajectory, path, reference, input, cell)
+  check_pairing(trajectory, path, input.by)
+  check_pairing(reference, input.reference, input.by)
   local by = way_of_pairing(trajectory, reference, input.by)
   local options = { by = by, max_gap = input.max_gap, offset = input.offset, convention = input.association }
   local rule = by == "name" and names_rule(trajectory, reference, input.names)
@@ -125,7 +141,7 @@ function M.each(input, report)
       i = i + 1
       local trajectory = read(input.estimate[i], input, "estimate")
       local cell = report:within { method = labels[i] }
-      local est, ref = associated(trajectory, reference, input, cell)
+      local est, ref = associated(trajectory, input.estimate[i], reference, input, cell)
       if est then return { est = est, ref = ref, cell = cell, trajectory = trajectory, reference = reference } end
     end
   end

@@ -212,7 +212,7 @@ end
 -- Protocols -----------------------------------------------------------------------------------------------------------
 
 local input_kinds <const> = {
-  "text", "path", "file", "folder", "number", "integer", "choice", "list", "flag", "no_kind",
+  "text", "path", "file", "folder", "output", "number", "integer", "choice", "list", "flag", "no_kind",
 }
 
 local function input()
@@ -222,6 +222,8 @@ local function input()
   maybe("unit", any { "m", "deg", "s", "B", "px", 3 })
   maybe("min", any { 0, -1, "a" })
   maybe("max", any { 0, 1e9, {} })
+  maybe("above", any { 0, -1, "a" })
+  maybe("ending", any { ".png", "", 3 })
   maybe("choices", any { { "a", "b" }, {}, "a", { 1, {} } })
   maybe("of", any(input_kinds))
   maybe("position", any { 1, 2, 0, "x" })

@@ -91,23 +91,32 @@ return aib.test {
     says({ kind = "number" }, "3m", "a number without unit expected, found '3m'")
     says({ kind = "number", unit = "m" }, "3kg", "a number in m expected, found '3kg'")
     says({ kind = "number", min = 0 }, "-1", "at least 0 expected, found '-1'")
+    says({ kind = "number", above = 0 }, "0", "more than 0 expected, found '0'")
+    says({ kind = "list", of = "number", above = 0 }, "1,-1", "more than 0 expected, found '-1'")
+    says({ kind = "number" }, "1e999", "a number expected, found '1e999'")
     says({ kind = "number", max = 1 }, "2", "at most 1 expected, found '2'")
     says({ kind = "integer" }, "1.5", "an integer expected, found '1.5'")
     says({ kind = "integer" }, "1e400", "an integer expected, found '1e400'")
     says({ kind = "choice", choices = { "centre", "floor" } }, "center",
-      "one of centre, floor expected, found 'center'")
+      "one of centre, floor expected, found 'center', did you mean 'centre'?")
+    says({ kind = "choice", choices = { "centre", "floor" } }, "edge", "one of centre, floor expected, found 'edge'")
     says({ kind = "path" }, "a\0b", "a path expected, found 'a\0b'")
     says({ kind = "file" }, "a\0b", "a path expected, found 'a\0b'")
     t:contains(refusal(t, { key = { kind = "file", default = "a\0b" } }, {}), "a path expected, found 'a\0b'")
     says({ kind = "list", of = "integer" }, "1,x", "an integer expected, found 'x'")
     says({ kind = "flag", default = nil, position = 1 }, "maybe", "true or false expected, found 'maybe'")
     says({ kind = "path" }, "", "a path expected, found ''")
+    says({ kind = "output" }, "/no/such/x.csv", "/no/such: no such folder")
+    says({ kind = "output" }, "/", "/: a file expected, found a folder")
+    says({ kind = "output", ending = ".png" }, "x.jpg", "a name that ends in .png expected, found 'x.jpg'")
   end,
 
   ["a command line that is not complete is refused"] = function(t)
     local inputs = { est = { kind = "path", help = "the estimate" } }
     t:contains(refusal(t, inputs, {}), "EST is missing (the estimate)")
-    t:contains(refusal(t, inputs, { "a", "b" }), "1 arguments at most expected, found 'b' beside them")
+    t:contains(refusal(t, inputs, { "a", "b" }), "1 argument at most expected, found 'b' too")
+    t:contains(refusal(t, {}, { "a" }), "no argument expected, found 'a' too")
+    t:contains(refusal(t, { est = { kind = "path", position = 1 }, cite = { kind = "text" } }, {}), "EST is missing")
     t:contains(refusal(t, inputs, { "a", "--json" }), "--json: a value is missing")
     t:contains(refusal(t, inputs, { "a", "--quiet=1" }), "--quiet takes no value")
     t:contains(refusal(t, inputs, { "a", "--json", "/no/such/x.json" }), "--json: /no/such: no such folder")
@@ -178,6 +187,12 @@ cite: Nobody 2026
 ]])
   end,
 
+  ["help tells which options have to be given"] = function(t)
+    local _, out = call(protocol_with { depth = { kind = "folder", position = 1 }, out = { kind = "output" } },
+      { "--help" })
+    t:contains(out, "usage: aib-lua demo [options] --out FILE DEPTH\n")
+  end,
+
   ["a declaration that is wrong is an error at its line"] = function(t)
     local function declare(spec) return function() aib.protocol(spec) end end
     local run = function() end
@@ -196,6 +211,7 @@ cite: Nobody 2026
     t:raises("input 'a': unknown kind 'fiel', did you mean 'file'?", input("a", { kind = "list", of = "fiel" }))
     t:raises("input 'a': of: a kind of one value expected", input("a", { kind = "list", of = "list" }))
     t:raises("input 'a': min: a number expected, found string", input("a", { kind = "number", min = "0" }))
+    t:raises("input 'a': above: a number expected, found string", input("a", { kind = "number", above = "0" }))
     t:raises("input 'a': help: a string expected, found number", input("a", { kind = "number", help = 3 }))
     t:raises("input 'a': an integer expected, found string", input("a", { kind = "integer", default = "3" }))
     t:raises("input 'json': the name is taken", input("json", { kind = "file" }))
@@ -233,7 +249,14 @@ cite: Nobody 2026
     t:equal(out, "")
     t:contains(err, "test_protocol.lua:")
     t:contains(err, "attempt to index a nil value")
+    t:contains(err, "in field 'body'")  -- where it began, not where it was passed on
     t:check(not aib.system.is_file(scratch))
+  end,
+
+  ["what the library refuses is a sentence with the script's line"] = function(t)
+    local code, _, err = call(protocol_with({}, function() aib.stats.quantile({ 1, 2 }, 3) end), {})
+    t:equal(code, 1)
+    t:check(err:find "^demo: [^\n]*%(.*test_protocol%.lua:%d+%)\n$", err)
   end,
 
   ["an input file that is bad is one sentence and leaves no result"] = function(t)
@@ -288,6 +311,7 @@ cite: Nobody 2026
     t:equal(p:run({ k = 3.0 }):records()[1].value, 3)
     t:raises("demo: K: at most 5 expected, found '7'", p.run, p, { k = 7 })
     t:raises("demo: K: an integer expected, found string", p.run, p, { k = "3" })
+    t:raises("demo: K: an integer expected, found '", p.run, p, { k = 0 / 0 })
     t:raises("demo: unknown input 'kk', did you mean 'k'?", p.run, p, { kk = 1 })
     t:raises("demo: K is missing", p.run, p, {})
     t:equal(tostring(p), "protocol(demo)")

@@ -3,12 +3,14 @@ error("Cannot require a meta file")
 
 ---One input of a protocol. It is given as `--key value`, by place where it has one, or by name from Lua.
 ---@class aib.protocol.Input
----@field kind "text"|"path"|"file"|"folder"|"number"|"integer"|"choice"|"list"|"flag"
+---@field kind "text"|"path"|"file"|"folder"|"output"|"number"|"integer"|"choice"|"list"|"flag"
 ---@field default? any  # an input without one has to be given; a flag is false
 ---@field unit? string  # of a number: "5cm" is 0.05 where it is "m"
 ---@field min? number
 ---@field max? number
+---@field above? number  # a bound that is not allowed itself: 0 of a length that has to be there
 ---@field choices? string[]  # of a choice
+---@field ending? string  # of an output: ".png"
 ---@field of? string  # kind of a list's elements, default "path"
 ---@field position? integer  # also given by place; inputs without default are, by name, where none says so
 ---@field help? string
