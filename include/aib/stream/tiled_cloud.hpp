@@ -81,9 +81,7 @@ void for_each_point(const cloud_file& file,
 
 }  // namespace detail
 
-[[nodiscard]] inline bool is_finite(const point& p) {
-  return cloud::is_finite({p[0], p[1], p[2]});
-}
+[[nodiscard]] inline bool is_finite(const point& p) { return cloud::is_finite({p[0], p[1], p[2]}); }
 
 /// A box in float, empty until something is added.
 struct float_box {
