@@ -36,6 +36,14 @@ WRITERS = {
     "a.npy": "aib.io.write_array(path, cloud)",
     "a.txt": "aib.io.write_trajectory(path, poses)",
     "a.kitti": "aib.io.write_trajectory(path, poses)",
+    "transforms.json": "aib.io.write_trajectory(path, poses, { cameras = cameras })",
+    "poses.npy": "aib.io.write_trajectory(path, poses)",
+    "a.csv": "aib.io.write_waypoints(path, poses, { origin = { 48, 11, 520 } })",
+    "a.kml": "aib.io.write_waypoints(path, poses, { origin = { 48, 11, 520 } })",
+    "a.plan": "aib.io.write_waypoints(path, poses, { origin = { 48, 11, 520 } })",
+    "picture.png": "aib.io.write_image(path, aib.depth.error_image(depth, depth))",
+    "pieces.ply": "aib.io.cloud_writer(path):add(cloud):add(cloud):commit()",
+    "a.svg": "aib.report.plot.write(path, aib.report.plot.ape(poses, poses))",
     "a.json": "aib.system.write_text(path, ('x'):rep(20000))",
     "model": "aib.io.write_trajectory(path, poses, { cameras = cameras })",
 }
@@ -127,8 +135,14 @@ class Faults(unittest.TestCase):
                 self.assertEqual(after, before)
 
     def test_a_full_disk_is_told(self):
-        done = shell("aib.system.write_text(arg[1], 'abc')", "/dev/full")
-        self.refused(done, 1, "/dev/full: cannot write: No space left on device")
+        for name, writer in WRITERS.items():
+            if name == "model":  # a folder
+                continue
+            with self.subTest(name):
+                (self.folder / name).symlink_to("/dev/full")
+                _, done = self.write(name, writer)
+                self.refused(done, 1, name, "cannot write: No space left on device")
+        self.assertEqual(self.names(), sorted(set(WRITERS) - {"model"}))
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run([AIB_LUA, "-e", "print(1)"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
         self.refused(done, 1, "standard output: cannot write: No space left on device")
@@ -182,6 +196,27 @@ class Faults(unittest.TestCase):
             content = path.read_bytes()
             injected[self._testMethodName] += 1
             self.assertEqual((len(content), len(set(content))), (3000000, 1))
+
+    def test_a_kill_leaves_one_of_two_files_whatever_the_format(self):
+        random.seed(3)
+        for name, writer in WRITERS.items():
+            with self.subTest(name), tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
+                script.write("local aib = require 'aib'\nmath.randomseed(1)\n" + THINGS + MESH + writer
+                             + "\nprint('going') io.stdout:flush() while true do " + writer + " end")
+                script.flush()
+                with subprocess.Popen([AIB_LUA, script.name, self.folder / name], stdout=subprocess.PIPE) as process:
+                    process.stdout.readline()
+                    whole = self.contents(name)
+                    time.sleep(random.uniform(0, 0.03))
+                    process.kill()
+                injected[self._testMethodName] += 1
+                self.assertEqual(self.contents(name), whole)
+
+    def contents(self, name):
+        """The bytes of a file, or of the files of a folder without those that a killed writer left beside them."""
+        path = self.folder / name
+        files = [path] if path.is_file() else sorted(p for p in path.iterdir() if p.suffix in (".bin", ".txt"))
+        return {file.name: file.read_bytes() for file in files}
 
     # Memory ----------------------------------------------------------------------------------------
 
@@ -343,6 +378,34 @@ class Faults(unittest.TestCase):
                 lua.communicate(timeout=PATIENCE_S)
             self.assertEqual(lua.returncode, 0)
 
+    def test_no_thread_is_left_after_an_interrupt_or_an_error(self):
+        calls = {name: self.LONG[name] for name in ("auc", "compare", "frames", "normals", "offsets", "unproject")}
+        calls["failing"] = "frames[#frames + 1] = { name = 'x', estimate = 'no', reference = 'no' } aib.depth.evaluate(frames)"
+        with tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
+            script.write("local aib = require 'aib'\n" + self.LARGE)
+            script.flush()
+            words = [AIB_LUA, "--threads", "3", "-i", script.name, self.folder, ROOT / "examples/data/gt/crane/mesh.ply"]
+            with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as lua:
+                def threads():
+                    return len(os.listdir(f"/proc/{lua.pid}/task"))
+
+                most = 1
+                for name, call in calls.items():
+                    with self.subTest(name):
+                        lua.stdin.write(f"print('going') io.stdout:flush() {call}\n")
+                        lua.stdin.flush()
+                        self.assertTrue(lua.stdout.readline().endswith("going\n"), lua.poll())
+                        time.sleep(0.1)
+                        most = max(most, threads())
+                        lua.send_signal(signal.SIGINT)
+                        lua.stdin.write("print('here') io.stdout:flush()\n")
+                        lua.stdin.flush()
+                        self.assertTrue(lua.stdout.readline().endswith("> here\n"), lua.poll())
+                        self.assertEqual(threads(), 1)
+                        injected[self._testMethodName] += 1
+                lua.communicate(timeout=PATIENCE_S)
+            self.assertEqual((lua.returncode, most), (0, 3))
+
     # These run until they are interrupted.
     ENDLESS = {
         "voxels": "while true do aib.sample.voxel(small, { size = 0.01 }) end",
@@ -372,6 +435,9 @@ class Faults(unittest.TestCase):
             return [protocol, data, "--quiet", "--samples", "2000", "--json", self.folder / out]
 
         self.assertEqual(run(*words("plain.json")).returncode, 0)
+        full = run(*words("full.json"), "--results", kept, limits=limit(resource.RLIMIT_FSIZE, 1000))
+        self.refused(full, 1, "cannot write: File too large")
+        self.assertFalse((self.folder / "full.json").exists())
         random.seed(2)
         for _ in range(4):
             with subprocess.Popen([AIB_LUA, *map(str, words("killed.json")), "--results", kept]) as process:
