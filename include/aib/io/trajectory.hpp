@@ -217,8 +217,8 @@ inline posed_images read_posed_images(const std::filesystem::path& path,
   posed_images images = detail::pose_reader(path, format, options).read();
   if (options.names.empty()) return images;
   if (options.names.size() != images.trajectory.size()) {
-    throw format_error(message(path.string(), ": ", options.names.size(), " names for ",
-                               images.trajectory.size(), " poses"));
+    throw format_error(
+        path, message(options.names.size(), " names for ", images.trajectory.size(), " poses"));
   }
   images.trajectory.names = options.names;
   return images;
