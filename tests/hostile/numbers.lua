@@ -79,6 +79,19 @@ local samples = aib.sample.mesh(mesh, { n = 20000, seed = 3 })
 show("samples", samples:summary())
 show("mesh", aib.mesh.compare(est, mesh, { samples = samples, tau = 0.5 }))
 show("mesh offsets", aib.mesh.offsets(est, mesh):summary())
+show("faces", aib.mesh.face_scores(est, mesh, { samples = samples, tau = 0.5 }))
+aib.system.write_text(folder .. "/l.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+  .. "property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty int label\nend_header\n"
+  .. "0 0 0\n10 0 0\n10 10 0\n0 10 0\n3 0 1 2 4\n3 0 2 3 7\n")
+local wall = aib.io.read_mesh(folder .. "/l.ply")
+local on_wall = aib.sample.mesh(wall, { n = 9000 })
+show("labels of a mesh", aib.mesh.compare_by_label(est, wall, { samples = on_wall, tau = 0.5 }))
+show("labels of a cloud", aib.cloud.compare_by_label(est, on_wall, { tau = 0.5 }))
+show("labelled", aib.mesh.with_labels(est, wall):summary())
+show("grid", aib.sample.voxel_grid({ size = 0.4 }):add(est):add(ref):cloud():summary())
+show("both ways", aib.cloud.curve(select(1, aib.cloud.distances_both_ways(est, ref)), aib.cloud.distances(ref, est), {
+  max = 0.5, steps = 20,
+}))
 show("even", aib.sample.mesh(mesh, { n = 300, method = "poisson" }):summary())
 local est_path, ref_path = folder .. "/e.ply", folder .. "/r.ply"
 aib.io.write_cloud(est_path, est)
@@ -93,6 +106,10 @@ end
 show("angles", aib.pose.relative_angles(e, r, { tau = { 0.5, 5 } }))
 show("pairs", aib.pose.pair_histogram(e, r, { rotation = { 1, 5 }, translation = { 1, 5 } }).counts)
 show("gaps", aib.pose.auc_by_gap(e, r, { { 1, 10 }, { 11, 100 } }))
+show("worst", aib.pose.worst_pairs(e, r, { n = 40 }))
+local halves = {}
+for i = 1, #r do halves[i] = i <= 75 and 1 or 2 end
+show("batches", aib.pose.auc_by_batch(e, r, halves))
 show("ape", aib.pose.ape(aib.align.trajectory(e, r, { robust = true }).transform * e, r).rmse)
 show("rpe", aib.pose.rpe(e, r).rmse)
 show("bootstrap", aib.stats.bootstrap(aib.pose.ape(e, r).errors, { resamples = 200 }))
@@ -111,6 +128,28 @@ show("boundary", aib.depth.boundary_f1(estimate, truth))
 show("strata", aib.depth.strata(truth):summary())
 show("risk", aib.depth.risk_coverage(estimate, truth, truth).aurc)
 show("points", aib.sample.unproject(estimate, camera, e[7]):summary())
+
+-- Rays
+local views, names = {}, {}
+for i = 1, 4 do
+  local down <const> = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } }
+  views[i], names[i] = aib.math.pose { rotation = down, centre = { 2 * i, 5, 6 } }, ("v%d.png"):format(i)
+end
+local flight = aib.pose.trajectory(views, { names = names })
+local scene = aib.render.scene(wall)
+local seen = aib.render.frame(scene, camera, views[2])
+show("rendered", { seen.depth:summary(), seen.range:summary(), seen.labels:summary(), seen.n_hit })
+show("files", aib.render.frames(scene, flight, camera, { folder = folder, maps = { "depth", "labels" } }).n_frames)
+show("read again", aib.io.read_depth(folder .. "/depth/v3.exr"):summary())
+local n_views = 0
+for _, n in ipairs(aib.render.visible(scene, est, flight, camera)) do n_views = n_views + n end
+show("visible", n_views)
+local free = aib.render.free_space(scene, est, flight, camera)
+show("free", { free.n_surface, free.n_free, free.n_hidden })
+local measured = aib.survey.measure(flight, camera, scene, { samples = 3000 })
+show("measured", { measured.overlap, measured.gsd_mm, measured.coverage, measured.incidence, measured.hit_share })
+show("noise", aib.survey.sensor_noise(aib.depth.error_image(estimate, truth), { seed = 5 }):summary())
+
 local frames = {}
 for i = 1, 12 do
   local name = ("%s/%02d."):format(folder, i)
