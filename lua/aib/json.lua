@@ -22,6 +22,7 @@ for digits = 1, 17 do formats[digits] = ("%%.%dg"):format(digits) end
 function M.number(x)
   if math.type(x) == "integer" then return ("%d"):format(x) end
   if x ~= x or x == math.huge or x == -math.huge then error("json: a number that is not finite", 2) end
+  if x == 0 then return "0" end  -- of either sign
   local text = ("%.15g"):format(x)
   local first, last = 1, 15
   if tonumber(text) + 0.0 ~= x then first, last = 16, 17 end
@@ -35,7 +36,19 @@ local escapes = {
   ['"'] = '\\"', ["\\"] = "\\\\", ["\b"] = "\\b", ["\f"] = "\\f", ["\n"] = "\\n", ["\r"] = "\\r", ["\t"] = "\\t",
 }
 
+--- The text, in which bytes that are no UTF-8 (of names in files) are replaced.
+local function valid(text)
+  local parts, at = {}, 1
+  while true do
+    local _, stop = utf8.len(text, at)
+    if not stop then return table.concat(parts) .. text:sub(at) end
+    parts[#parts + 1] = text:sub(at, stop - 1) .. "\u{FFFD}"
+    at = stop + 1
+  end
+end
+
 local function quoted(text)
+  if not utf8.len(text) then text = valid(text) end
   local safe = text:gsub('[%c"\\\127]', function(c) return escapes[c] or ("\\u%04x"):format(c:byte()) end)
   return '"' .. safe .. '"'
 end
@@ -98,11 +111,11 @@ local unescapes = { b = "\b", f = "\f", n = "\n", r = "\r", t = "\t", ['"'] = '"
 local reader = {}
 reader.__index = reader
 
-function reader:fail(expected)
+function reader:fail(expected, found)
   local _, line = self.text:sub(1, self.at - 1):gsub("\n", "")
-  local found = self.text:sub(self.at, self.at)
-  failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected,
-    found == "" and "the end" or "'" .. found .. "'"))
+  local next_one = self.text:sub(self.at, self.at)
+  found = found or next_one == "" and "the end" or "'" .. next_one .. "'"
+  failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected, found))
 end
 
 --- Skips blanks, then takes what matches `pattern`, or returns nil.
@@ -193,12 +206,18 @@ function reader:value(depth)
   local number = self:take("%-?%d+%.?%d*[eE]?[+-]?%d*")
   local x = number and not number:find("^%-?0%d") and tonumber(number)
   if not x then self:fail("a value") end
+  if math.abs(x) == math.huge then self:fail("a number below 1.8e308", number) end
   return x
 end
 
 --- The value of a JSON text. Raises a format error that begins with `name` (a path) where it is none.
 function M.decode(text, name)
   local r = setmetatable({ text = text, at = 1, name = name or "json" }, reader)
+  local _, stop = utf8.len(text)
+  if stop then
+    r.at = stop
+    r:fail("UTF-8", ("byte 0x%02x"):format(text:byte(stop)))
+  end
   local value = r:value(0)
   if r:take(".") then
     r.at = r.at - 1

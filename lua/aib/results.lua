@@ -4,11 +4,15 @@
 --- Reading back what reports wrote as JSON.
 local aib = require "aib"
 local failure = require "aib.failure"
+local schema = require "aib.schema"
+local seal_of = require "aib.report.seal"
+local shell = require "aib.shell"
 local suggest = require "aib.suggest"
 
 local M = {}
 
 local format_version <const> = 1
+local rules <const> = aib.json.decode(shell.text "aib/results.schema.json", "results.schema.json")
 
 local function text_of(value)
   if value == nil or value == aib.json.null then return "none" end
@@ -16,8 +20,8 @@ local function text_of(value)
   return tostring(value)
 end
 
---- Records of a result file, in its order, each with `place` = metric and group as one text. Raises a format error
---- where the file is none.
+--- A result file, each of its records with `place` = metric and group as one text. Raises a format error where the file
+--- breaks results.schema.json.
 function M.read(path)
   local result = aib.json.decode(aib.system.read_text(path), path)
   local function wrong(sentence) failure.raise("format", path .. ": " .. sentence) end
@@ -27,8 +31,17 @@ function M.read(path)
   if result.aib.format ~= format_version then
     wrong(("results of format %d expected, found %s"):format(format_version, text_of(result.aib.format)))
   end
-  for i, record in ipairs(result.records) do
-    if type(record) ~= "table" or type(record.name) ~= "string" then wrong(("record %d: a name expected"):format(i)) end
+  local mistake = schema.mistake(result, rules)
+  if mistake then wrong(mistake) end
+  if result.shard and result.shard.sha256 ~= seal_of(result) then
+    wrong "the shard was changed since it was written"
+  end
+  for i, frames in ipairs(result.frames or {}) do
+    if #frames.names ~= #frames.values then
+      wrong(("frames[%d]: as many values as names expected, found %d and %d"):format(i, #frames.values, #frames.names))
+    end
+  end
+  for _, record in ipairs(result.records) do
     if record.value == aib.json.null then record.value = nil end
     record.group = record.group or {}
     local parts = { record.name }

@@ -89,11 +89,14 @@ local function list_files(of)
   return list
 end
 
-local function read_json(path)
+--- Writes a text with its hash behind it.
+local function write_sealed(path, text) aib.system.write_text(path, text .. aib.system.sha256(text) .. "\n") end
+
+--- What `write_sealed` wrote, and its hash; nil where there is nothing, or it was changed.
+local function read_sealed(path)
   if not aib.system.is_file(path) then return nil end
-  local text = aib.system.read_text(path)
-  local ok, value = pcall(aib.json.decode, text, path)
-  return ok and type(value) == "table" and value or nil, text
+  local text, seal = aib.system.read_text(path):match "^(.*\n)(%x+)\n$"
+  if text and aib.system.sha256(text) == seal then return aib.json.decode(text), seal end
 end
 
 --- Whether no file of a part was touched; `statuses` are those that were looked at in this run.
@@ -114,11 +117,11 @@ local function is_drawn(job, place) return job.report:draws() and not place.rang
 local function kept(job, place, key, statuses)
   if not job.results then return nil end
   local path = path_of(job, place)
-  local part, text = read_json(path .. ".json")
+  local part, seal = read_sealed(path .. ".part")
   if not part or part.key ~= key or not is_untouched(job, part, statuses) then return nil end
   if is_drawn(job, place) then
-    local page = read_json(path .. ".views.json")
-    if not page or page.part ~= aib.system.sha256(text) then return nil end
+    local page = read_sealed(path .. ".views")
+    if not page or page.part ~= seal then return nil end
     part.views = page.views
   end
   return part
@@ -137,11 +140,11 @@ local function made(job, place, key)
   } .. "\n"
   local views = part.report:draws() and aib.json.encode {
     part = aib.system.sha256(text), views = aib.json.list(part.report.store.views),
-  }
+  } .. "\n"
   if job.results then
     local path = path_of(job, place)
-    if views then aib.system.write_text(path .. ".views.json", views) end
-    aib.system.write_text(path .. ".json", text)
+    if views then write_sealed(path .. ".views", views) end
+    write_sealed(path .. ".part", text)
   end
   local done = aib.json.decode(text)
   done.views = views and aib.json.decode(views).views

@@ -15,7 +15,7 @@ namespace {
 
 /// Modules that serve the others; `require "aib.suggest"` finds them, `aib` does not show them.
 constexpr std::string_view inner_modules[] = {"command_line", "completion", "failure", "help",
-                                              "inputs",       "stubs",      "suggest"};
+                                              "inputs",       "schema",     "stubs",   "suggest"};
 
 /// "protocol" of "aib/protocol.lua", empty for files that are no member of `aib`.
 std::string member_name(std::string_view path) {

@@ -81,7 +81,7 @@ return aib.test {
     local second = json_of(t, script, out, data, "--results", kept)
     local again = {}
     for name, state in pairs(states(kept)) do
-      if state ~= before[name] then again[#again + 1] = name:match "^(.*)_%x+%.json$" end
+      if state ~= before[name] then again[#again + 1] = name:match "^(.*)_%x+%.part$" end
     end
     t:equal(again, { "crane_GLOMAP" })
     t:check(first == second, "the bytes are the same")
@@ -120,8 +120,16 @@ return aib.test {
     local scratch <close> = support.scratch_folder()
     local data, kept, out = copied_benchmark(scratch)
     local first = json_of(t, script, out, data, "--results", kept)
-    local path = kept .. "/" .. aib.system.names_in(kept)[1]
-    aib.system.write_text(path, aib.system.read_text(path):sub(1, 100))
+    for i, damage in ipairs {
+      function(text) return text:sub(1, 100) end,
+      function(text) return (text:gsub('"bytes": ', '"bytes": 1', 1)) end,
+      function() return "" end,
+    } do
+      local path = kept .. "/" .. aib.system.names_in(kept)[i]
+      local text = aib.system.read_text(path)
+      t:check(damage(text) ~= text, path)
+      aib.system.write_text(path, damage(text))
+    end
     t:check(json_of(t, script, out, data, "--results", kept) == first, "the bytes are the same")
   end,
 
@@ -165,6 +173,10 @@ return aib.test {
     t:contains(complaints, "comes twice")
     _, complaints = support.aib_lua(merge, out)
     t:contains(complaints, "a shard expected, made by --shard INDEX/COUNT")
+    local changed = aib.system.read_text(shards[2]):gsub('"min_coverage": 0.5', '"min_coverage": 0.6')
+    aib.system.write_text(shards[2], changed)
+    _, complaints, code = support.aib_lua(merge, table.unpack(shards))
+    t:equal({ complaints, code }, { ("merge: %s: the shard was changed since it was written\n"):format(shards[2]), 3 })
     for _, words in ipairs { { "--shard", "5/4" }, { "--batch", "COLMAP" }, { "--batch", "COLMAP=0" } } do
       _, complaints, code = support.aib_lua(script, data, table.unpack(words))
       t:equal(code, 2)

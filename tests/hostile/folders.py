@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: the aib authors
 # SPDX-License-Identifier: MIT
-"""Damages files of whole folders (a benchmark, outputs of methods) and runs what scores them.
+"""Damages files of whole folders (a benchmark, results, outputs of methods) and runs what reads them.
 
 usage: folders.py SOURCE_ROOT AIB_LUA [--rounds N] [--sanitized]
 
-Each run ends with its result, of finite numbers, or with one sentence that names what is wrong, exit
-code 3 and no result. A round damages a copy of each folder once, by a random number of its own.
+Each run ends with its result, of finite numbers, or with one sentence that names what is wrong, no
+result, and exit code 3 (1 where an output cannot be written). A round damages a copy of each folder
+once, by a random number of its own.
 """
 
 import argparse
@@ -26,16 +27,28 @@ from zoo import SANITIZER
 
 SECONDS = 60  # a run that takes longer hangs; nothing is measured
 ADDRESSES = 4 << 30
-BENCHMARK, METHODS = "examples/data", "tests/lua/methods"
+BENCHMARK, METHODS, RESULTS = "examples/data", "tests/lua/methods", "results"
+QUICK = "--samples 500 --stride 8 --quiet"
+# Results that are made first.
+MADE = {
+    "plain.json": "--per-frame",
+    "other.json": "--per-frame --alignment umeyama",
+    "first.json": "--shard 1/2",
+    "second.json": "--shard 2/2",
+    "again.json": "--results {}/kept",
+}
 # What is damaged, and what then reads it.
 JOBS = [
-    (BENCHMARK, "asset_inspection {} --samples 500 --stride 8"),
+    (BENCHMARK, f"asset_inspection {{}} {QUICK}"),
     (BENCHMARK, "depth {}/methods/sgbm_gtposes/crane/depth {}/gt/crane/depth"),
     (BENCHMARK, "video_depth {}/methods/sgbm_gtposes/crane/depth {}/gt/crane/depth"),
     (BENCHMARK, "trajectory {}/methods/colmap/crane/sparse {}/gt/crane/poses"),
     (BENCHMARK, "pose_auc {}/methods/glomap/crane/sparse {}/gt/crane/poses"),
     (BENCHMARK, "reconstruction {}/methods/sgbm_colmap/crane/fused.ply {}/gt/crane/mesh.ply --samples 500"),
     (BENCHMARK, "telemetry {}/gt/crane/poses --estimate {}/methods/colmap/crane/sparse"),
+    (RESULTS, "compare {}/plain.json {}/other.json"),
+    (RESULTS, "merge {}/first.json {}/second.json"),
+    (RESULTS, f"asset_inspection {BENCHMARK} {QUICK} --results {{}}/kept"),
     *((f"{METHODS}/{name}", "tests/hostile/open_method.lua {}")
       for name in ("cut3r", "da3", "da3_streaming", "monst3r", "pi3", "vggt")),
 ]
@@ -85,12 +98,30 @@ def exchange_lines(rng, content):
     return b"\n".join(lines)
 
 
+def change_a_value(rng, content):
+    """Something of a JSON text is something else, or away."""
+    try:
+        root = json.loads(content)
+    except ValueError:
+        return content
+    node = [root]
+    key = 0
+    while isinstance(node[key], (list, dict)) and node[key] and rng.random() < 0.9:
+        node = node[key]
+        key = rng.choice(list(node)) if isinstance(node, dict) else rng.randrange(len(node))
+    node[key] = rng.choice([None, True, "x", "", -1, 0.5, 1e308, 2**60, [], {}, [[]], {"x": 1}, node[key]])
+    if rng.random() < 0.3:
+        del node[key]
+    return json.dumps(root).encode()
+
+
 CHANGES = [cut, turn_a_bit, overwrite, repeat, insert, change_a_number, exchange_lines]
 
 
 def damage(rng, path):
     """Spoils a file, and says how."""
-    how = rng.choice([*CHANGES, "none", "a folder", "empty", "a neighbour"])
+    of_json = [change_a_value] * 10 if path.suffix == ".json" else []
+    how = rng.choice([*CHANGES, *of_json, "none", "a folder", "empty", "a neighbour"])
     content = path.read_bytes()
     path.unlink()
     if how == "a folder":
@@ -118,16 +149,19 @@ def damaged_files(rng, root, words):
 def faults_of(run, root, result):
     """What is wrong with how a run ended."""
     said = run.stderr.decode(errors="replace")
-    if "traceback" in said or "Sanitizer" in said or run.returncode not in (0, 3):
+    if "traceback" in said or "Sanitizer" in said or run.returncode not in (0, 1, 3):
         yield f"exit code {run.returncode}"
-    elif run.returncode == 3:
+    elif run.returncode != 0:
         if said.count("\n") != 1 or str(root) not in said:
             yield "one line with a path expected"
         if result.exists():
             yield "a result was left"
     elif result.exists():
         numbers = []
-        json.loads(result.read_text(), parse_constant=numbers.append)
+        try:
+            json.loads(result.read_bytes(), parse_constant=numbers.append)
+        except ValueError as problem:
+            yield f"the result is no JSON: {problem}"
         yield from (f"the result holds {number}" for number in numbers)
 
 
@@ -135,12 +169,19 @@ def limit_addresses():
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
 
 
-def attempt(root, aib_lua, is_sanitized, job, seed):
+def make_results(root, aib_lua, folder):
+    folder.mkdir()
+    for name, flags in MADE.items():
+        words = f"asset_inspection {BENCHMARK} {QUICK} {flags.format(folder)} --json {folder / name}"
+        subprocess.run([aib_lua, *words.split()], cwd=root, check=True)
+
+
+def attempt(root, made, aib_lua, is_sanitized, job, seed):
     """(exit code, faults with what explains them)"""
     folder, words = JOBS[job][0], JOBS[job][1].split()
     with tempfile.TemporaryDirectory() as away:
         copy, result = pathlib.Path(away, "folder"), pathlib.Path(away, "result.json")
-        shutil.copytree(root / folder, copy)
+        shutil.copytree(made if folder == RESULTS else root / folder, copy)
         done = damaged_files(random.Random(f"{job} {seed}"), copy, words)
         command = [aib_lua, *(word.format(copy) for word in words)]
         if not words[0].endswith(".lua"):
@@ -157,7 +198,8 @@ def attempt(root, aib_lua, is_sanitized, job, seed):
         except subprocess.TimeoutExpired:
             return "hung", [f"{words[0]}, round {seed}: hung; {done}"]
         said = run.stderr.decode(errors="replace").strip()[-2000:]
-        return run.returncode, [f"{words[0]}, round {seed}: {fault}; {done}\n  {said}" for fault in faults_of(run, copy, result)]
+        faults = faults_of(run, copy, result)
+        return run.returncode, [f"{words[0]}, round {seed}: {fault}; {done}\n  {said}" for fault in faults]
 
 
 def main():
@@ -167,16 +209,19 @@ def main():
     parser.add_argument("--rounds", type=int, default=6)
     parser.add_argument("--sanitized", action="store_true")
     options = parser.parse_args()
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as away, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        made = pathlib.Path(away, RESULTS)
+        make_results(options.root, options.aib_lua, made)
         results = list(pool.map(
-            lambda at: attempt(options.root, options.aib_lua, options.sanitized, *at),
+            lambda at: attempt(options.root, made, options.aib_lua, options.sanitized, *at),
             [(job, seed) for seed in range(options.rounds) for job in range(len(JOBS))],
         ))
     codes = collections.Counter(code for code, _ in results)
     for fault in (fault for _, faults in results for fault in faults):
         print(fault)
     n_failed = sum(bool(faults) for _, faults in results)
-    print(f"damaged folders: {len(results)} scored by {len(JOBS)} commands: {codes[0]} gave results, {codes[3]} were refused")
+    print(f"{len(results)} damaged folders, {len(JOBS)} commands: {codes[0]} gave results, "
+          f"{codes[1] + codes[3]} were refused")
     print(f"{len(results) - n_failed} passed, {n_failed} failed")
     return 1 if n_failed else 0
 

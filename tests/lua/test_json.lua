@@ -32,6 +32,12 @@ return aib.test {
     t:equal(json.encode 'a"b\\\n\1', '"a\\"b\\\\\\n\\u0001"')
   end,
 
+  ["bytes that are no UTF-8 are replaced, and refused"] = function(t)
+    t:equal(json.encode "a\xC6b\xFF", '"a\u{FFFD}b\u{FFFD}"')
+    t:equal(json.encode "\xE2\x82", '"\u{FFFD}\u{FFFD}"')
+    t:raises("r.json:2: UTF-8 expected, found byte 0xc6", json.decode, '["a",\n"\xC6b"]', "r.json")
+  end,
+
   ["what is written is read back"] = function(t)
     local value = { name = "é\n", list = { 1, 2.5, -3e-9 }, deep = { yes = true, no = false }, empty = {} }
     t:equal(json.decode(json.encode(value)), value)
@@ -47,6 +53,7 @@ return aib.test {
     t:raises("r.json:1: ',' or ']' expected, found the end", json.decode, "[1", "r.json")
     t:raises("a value expected, found 'n'", json.decode, "nil")
     t:raises("a value expected", json.decode, "01")
+    t:raises("json:1: a number below 1.8e308 expected, found -1e400", json.decode, "-1e400")
     t:raises("the end expected, found '2'", json.decode, "1 2")
     t:raises("the end of a string expected", json.decode, '"a\nb"')
     t:raises("an escape sequence expected", json.decode, '"\\x"')

@@ -40,7 +40,29 @@ return aib.test {
     end
     t:equal(said_of(t, '{"aib": {"format": 7}, "records": []}'), "results of format 1 expected, found 7")
     t:equal(said_of(t, '{"aib": {}, "records": []}'), "results of format 1 expected, found none")
-    t:equal(said_of(t, '{"aib": {"format": 1}, "records": [{"name": "a"}, {"name": 1}]}'), "record 2: a name expected")
+  end,
+
+  ["results that break their schema are refused"] = function(t)
+    local function said_of_records(records, more)
+      return said_of(t, ('{"aib": {"format": 1, "version": "1"}, "protocol": {"name": "p"}, "records": [%s]%s}'):format(
+        records, more or ""))
+    end
+    t:equal(said_of_records '{"name": "a", "value": 1}, {"name": 1, "value": 1}',
+      "records[2].name: string expected, found 1")
+    t:equal(said_of_records '{"name": "a", "value": "1"}', "records[1].value: number or null expected, found '1'")
+    t:equal(said_of_records '{"name": "a"}', "records[1]: value is missing")
+    t:equal(said_of_records '{"name": "a", "value": 1, "group": {"scene": ["x"]}}',
+      "records[1].group.scene: string expected, found an array")
+    t:equal(said_of_records '{"name": "a", "value": 1, "better": "more"}',
+      "records[1].better: lower or higher expected, found 'more'")
+    t:equal(said_of_records '{"name": "a", "value": 1, "units": "m"}',
+      "records[1]: unknown field 'units', did you mean 'unit'?")
+    t:equal(said_of_records("", ', "sources": {"a": {"bytes": -1, "sha256": "00"}}'),
+      "sources.a.bytes: 0 or more expected, found -1")
+    t:equal(said_of_records("", ', "sources": {"a": {"bytes": 1, "sha256": "x"}}'),
+      "sources.a.sha256: 64 hexadecimal digits expected, found 'x'")
+    t:equal(said_of_records("", ', "frames": [{"metric": "a", "group": {}, "names": ["b"], "values": []}]'),
+      "frames[1]: as many values as names expected, found 0 and 1")
   end,
 
   ["the place of a shard is INDEX/COUNT"] = function(t)
