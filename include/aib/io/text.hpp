@@ -54,12 +54,10 @@ inline void split(std::string_view line,
   }
 }
 
-/// The number that the whole text is, see find_number; nothing where it is not one.
+/// The number that the whole text is, see take_number; nothing where it is not one.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse(std::string_view text) {
-  const auto number = find_number<Number>(text);
-  if (!number || number->length != text.size()) return std::nullopt;
-  return number->value;
+  return take_number<Number>(text, "");
 }
 
 /// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
