@@ -15,6 +15,7 @@
 # Builds with clang and libFuzzer in build-fuzz/, or in the folder AIB_FUZZ, which keeps
 #   corpus/     from which the next run goes on; at first the bundled benchmark's files, those in
 #               tests/fuzz/seeds/, and those of the zoo where it is
+#   seeds/      what tests/fuzz/seeds.py writes, in every run
 #   findings/   which belong into tests/fuzz/regressions/, once mended
 #   ledger      a line each run: reader, seconds of processor time, runs, edges, findings
 set -euo pipefail
@@ -41,12 +42,14 @@ totals() {
   exit 77
 }
 mkdir -p "$work/findings"
+rm -rf "$work/seeds"
+python3 tests/fuzz/seeds.py "$work/seeds"
 program=$work/fuzz_readers
 libraries=(eigen3 nanoflann zlib libdeflate spng libjpeg nlohmann_json pugixml)
 if [ ! -x "$program" ] || [ -n "$(find include tests/fuzz -newer "$program" -name '*.[hc]pp' -print -quit)" ]; then
   # shellcheck disable=SC2046
-  clang++ -std=c++20 -g1 -O1 -ffp-contract=off -fsanitize=fuzzer,address,undefined \
-    -fno-sanitize-recover=undefined -D_GLIBCXX_ASSERTIONS -Iinclude \
+  clang++ -std=c++20 -g1 -O1 -ffp-contract=off -fsanitize=fuzzer,address,undefined,float-cast-overflow \
+    -fno-sanitize-recover=undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS -Iinclude \
     -DAIB_WITH_{EXR,NPZ,PNG,JPEG,JSON,XML,LIBDEFLATE} $(pkg-config --cflags "${libraries[@]}") \
     tests/fuzz/fuzz_readers.cpp -o "$program" $(pkg-config --libs "${libraries[@]}") -pthread
 fi
@@ -125,7 +128,9 @@ fuzz_reader() {
     mkdir -p "$corpus"
     while read -r seed; do cp "$seed" "$corpus/$(echo "$seed" | tr '/.' '__')"; done < <(seeds_of "$reader")
   fi
-  [ $status != 0 ] || reader_run "$reader" "$corpus" -max_total_time="$seconds" -max_len=65536 \
+  local places=("$corpus")
+  [ ! -d "$work/seeds/$reader" ] || places+=("$work/seeds/$reader")
+  [ $status != 0 ] || reader_run "$reader" "${places[@]}" -max_total_time="$seconds" -max_len=65536 \
     -print_final_stats=1 >>"$log" 2>&1 || status=$?
   [ $status != 72 ] || status=0  # somebody interrupted it: that is no finding
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
