@@ -36,7 +36,7 @@ local function camera_finder(input)
   local cameras = aib.io.read_cameras(input.cameras)
   local by_stem, only, count = {}, nil, 0
   for image, camera in pairs(cameras) do
-    by_stem[image:match("[^/]*$"):gsub("%.[^.]*$", "")] = camera
+    by_stem[depth_frames.stem(image)] = camera
     only, count = camera, count + 1
   end
   return function(name)

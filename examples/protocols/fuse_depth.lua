@@ -8,15 +8,15 @@
 local aib = require "aib"
 local depth_frames = require "aib.depth_frames"
 local failure = require "aib.failure"
-
-local function stem(name) return (name:match("[^/]*$"):gsub("%.[^.]*$", "")) end
+local suggest = require "aib.suggest"
 
 --- Pose and camera of every registered image, under the stem of its name.
 local function by_stem(trajectory, cameras)
-  local lost, poses = {}, {}
-  for _, name in ipairs(aib.pose.registration_rate(trajectory, trajectory).missing) do lost[name] = true end
+  local lost, poses = suggest.set(aib.pose.registration_rate(trajectory, trajectory).missing), {}
   for i, name in ipairs(trajectory.names) do
-    if not lost[name] and cameras[name] then poses[stem(name)] = { pose = trajectory[i], camera = cameras[name] } end
+    if not lost[name] and cameras[name] then
+      poses[depth_frames.stem(name)] = { pose = trajectory[i], camera = cameras[name] }
+    end
   end
   return poses
 end

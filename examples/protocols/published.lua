@@ -9,6 +9,7 @@
 ---   aib-lua compare table.json results.json
 local aib = require "aib"
 local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 --- The fields of a CSV line (RFC 4180; a field lies within one line).
 local function fields_of(line)
@@ -56,8 +57,7 @@ local function cells_of(path)
     local is_comment = line:find "^#" or not line:find "%S"
     if not is_comment and not heads then
       heads = fields_of(line)
-      local has = {}
-      for _, head in ipairs(heads) do has[head] = true end
+      local has = suggest.set(heads)
       if not (has.metric and has.value) then wrong "columns metric and value expected in the first line" end
     elseif not is_comment then
       local fields = fields_of(line)

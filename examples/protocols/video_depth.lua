@@ -6,6 +6,7 @@
 ---   aib-lua video_depth results/bonn bonn/depth     # folders of sequences, or one sequence each
 local aib = require "aib"
 local depth_frames = require "aib.depth_frames"
+local suggest = require "aib.suggest"
 
 local metrics <const> = { "abs_rel", "sq_rel", "rmse", "rmse_log", "delta1", "delta2", "delta3" }
 local fits <const> = { median = "median_lower", scale = "scale_l1", scale_shift = "scale_shift", metric = "none" }
@@ -23,10 +24,8 @@ end
 local function sequences(input)
   local list = {}
   for _, name in ipairs(folders_in(input.reference)) do
-    local folders = {}
-    for key, value in pairs(input) do folders[key] = value end
-    folders.name = name
-    folders.estimate, folders.reference = input.estimate .. "/" .. name, input.reference .. "/" .. name
+    local folders = suggest.with(input, { name = name, estimate = input.estimate .. "/" .. name,
+      reference = input.reference .. "/" .. name })
     if aib.system.is_folder(folders.estimate) then list[#list + 1] = folders end
   end
   return #list > 0 and list or { input }

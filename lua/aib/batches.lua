@@ -16,12 +16,6 @@ local align_fields <const> = {
   given = true, names = true,
 }
 
---- Pairs a batch's poses with the truth by name.
-local function paired(batch, truth, rules)
-  local est, ref = aib.pose.associate(batch.trajectory, truth, rules)
-  return est, ref
-end
-
 --- Appends the poses and names of a trajectory to lists.
 local function append(poses, names, trajectory)
   for i, name in ipairs(trajectory.names) do
@@ -35,7 +29,7 @@ local function collected(batches, truth, rules)
   local est, ref, est_names, ref_names = {}, {}, {}, {}
   for _, batch in ipairs(batches) do
     if batch.trajectory then
-      local e, r = paired(batch, truth, rules)
+      local e, r = aib.pose.associate(batch.trajectory, truth, rules)
       if #e > 0 then
         fit.parts[#fit.parts + 1] = { name = batch.name, batch = batch, est = e, ref = r, first = #est + 1 }
         append(est, est_names, e)
@@ -79,8 +73,7 @@ local function moved(fit)
   local est, ref, names, ref_names, batch, kept = {}, {}, {}, {}, {}, {}
   for k, part in ipairs(fit.parts) do
     if part.alignment then
-      local outlier = {}
-      for _, i in ipairs(part.alignment.outliers) do outlier[i] = true end
+      local outlier = suggest.set(part.alignment.outliers)
       append(est, names, part.alignment.transform * part.est)
       append(ref, ref_names, part.ref)
       for i = part.first, part.last do
@@ -108,9 +101,7 @@ end
 function M.align(batches, truth, options)
   options = options or {}
   suggest.check_keys("aib.batches.align", options, align_fields, 2)
-  local rules = { by = "name" }
-  for key, value in pairs(options.names or {}) do rules[key] = value end
-  local fit = collected(batches, truth, rules)
+  local fit = collected(batches, truth, suggest.with({ by = "name" }, options.names))
   if options.given then leave(fit) else fit_parts(fit, options) end
   fit.moved = moved(fit)
   return fit

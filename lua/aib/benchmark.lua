@@ -60,13 +60,8 @@ end
 --- Checks of one table against its fields; `fail(sentence)` names the place.
 local function check_fields(t, fields, required, fail)
   if type(t) ~= "table" then fail("a table expected, found " .. type(t)) end
-  local mistake = suggest.unknown_key(t, fields)
+  local mistake = suggest.unknown_key(t, fields) or suggest.wrong_type(t, fields)
   if mistake then fail(mistake) end
-  for field, kind in pairs(fields) do
-    if t[field] ~= nil and kind ~= "any" and type(t[field]) ~= kind then
-      fail(("%s: a %s expected, found %s"):format(field, kind, type(t[field])))
-    end
-  end
   for _, field in ipairs(required) do
     if t[field] == nil then fail(field .. " is missing") end
   end
@@ -77,18 +72,12 @@ local function check_name(name, known, what, fail)
   fail(("%s: unknown '%s'%s"):format(what, tostring(name), suggest.hint(name, suggest.keys(known))))
 end
 
-local function set_of(list)
-  local set = {}
-  for _, name in ipairs(list or {}) do set[name] = true end
-  return set
-end
-
 local function check_result(result, scenes, fail)
   check_fields(result, result_fields, { "scene" }, fail)
   check_name(result.scene, scenes, "scene", fail)
   local conditions = scenes[result.scene].conditions
   if conditions then
-    check_name(result.condition, set_of(conditions), "condition", fail)
+    check_name(result.condition, suggest.set(conditions), "condition", fail)
   elseif result.condition then
     fail(("condition: scene '%s' has none"):format(result.scene))
   end

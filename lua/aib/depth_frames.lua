@@ -7,6 +7,7 @@
 ---   local errors = depth_frames.evaluate(frames, { align = "median" })
 ---   depth_frames.report(errors:result(), report, { metrics = { "abs_rel" }, convention = "mean over frames" })
 local aib = require "aib"
+local csv_line = require "aib.report.csv_line"
 local drawings = require "aib.evaluation.drawings"
 local failure = require "aib.failure"
 local suggest = require "aib.suggest"
@@ -24,7 +25,7 @@ M.fields = { "srmse", "si_log_rmse", "silog", "abs_rel", "sq_rel", "rmse", "mae"
 
 --- The inputs of pairing and of what is written beside the report, and those of the protocol.
 function M.inputs(own)
-  local inputs = {
+  return suggest.with({
     estimate = { kind = "folder", position = 1, help = "folder of estimated depth maps" },
     reference = { kind = "folder", position = 2, help = "folder of true depth maps" },
     estimate_pattern = { kind = "path", default = "*",
@@ -41,9 +42,7 @@ function M.inputs(own)
       help = "PNG file to write: estimate, truth, error of the worst frames" },
     worst = { kind = "integer", default = 6, min = 1, help = "frames on it" },
     worst_by = { kind = "choice", choices = M.fields, default = "srmse", help = "error that says which are the worst" },
-  }
-  for key, input in pairs(own) do inputs[key] = input end
-  return inputs
+  }, own)
 end
 
 --- What * stands for where a file name fits the pattern; nil where it does not.
@@ -75,6 +74,9 @@ function M.files_in(folder, pattern)
   end
   return paths, names
 end
+
+--- The frame of an image: its name without folder and extension.
+function M.stem(image) return (image:match("[^/]*$"):gsub("%.[^.]*$", "")) end
 
 --- Path of the mask or label image of a frame; nil without a folder of them.
 local function image_of(folder, name)
@@ -108,10 +110,8 @@ end
 
 --- How the maps of a protocol's inputs are read: options of aib.depth.evaluate, which `own` completes.
 function M.reading(input, own)
-  local options = { rule = input.rule, estimate = { scale = input.estimate_scale },
-    reference = { scale = input.reference_scale } }
-  for key, value in pairs(own) do options[key] = value end
-  return options
+  return suggest.with({ rule = input.rule, estimate = { scale = input.estimate_scale },
+    reference = { scale = input.reference_scale } }, own)
 end
 
 local batch_size <const> = 32
@@ -157,16 +157,6 @@ function M.report_frames(frames, summary, report)
   end
   say("missing", frames.missing)
   say("without_a_valid_pixel", summary and summary.undefined or {})
-end
-
---- One line of a CSV file.
-local function csv_line(values)
-  local fields = {}
-  for i, value in ipairs(values) do
-    local text = type(value) == "number" and aib.json.number(value) or tostring(value)
-    fields[i] = text:find('[",\r\n]') and '"' .. text:gsub('"', '""') .. '"' or text
-  end
-  return table.concat(fields, ",") .. "\n"
 end
 
 --- Writes the errors of each frame (aib.Accumulator:frames) as CSV.

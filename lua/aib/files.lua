@@ -100,6 +100,12 @@ function files:whole_folder(name)
   return path
 end
 
+--- Path of a file or of a folder that is about to be read, remembered.
+function files:any(name)
+  if aib.system.is_folder(self:path(name)) then return self:whole_folder(name) end
+  return self:file(name)
+end
+
 --- The name that a pattern gives an image: {name} stands for its name, {stem} for the name without its extension.
 function M.expand(pattern, image)
   local values = { name = image, stem = (image:gsub("%.[^./]*$", "")) }

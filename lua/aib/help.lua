@@ -69,7 +69,7 @@ function M.text(value)
   local entry = name and stubs.all()[name]
   if not entry then return name and "no help on " .. name or "no help on this " .. type(value) end
   local out = { page(entry) }
-  if entry.kind == "class" then table.move(contents(name), 1, #contents(name), 2, out) end
+  for _, line in ipairs(entry.kind == "class" and contents(name) or {}) do out[#out + 1] = line end
   return table.concat(out, "\n")
 end
 

@@ -20,11 +20,6 @@ local system = require("aib").system
 
 local M = {}
 
-local fields <const> = {
-  kind = true, default = true, unit = true, min = true, max = true, above = true, choices = true, of = true,
-  ending = true, position = true, help = true,
-}
-
 local units <const> = {
   m = { m = 1, mm = 1e-3, cm = 1e-2, km = 1e3 },
   deg = { deg = 1, rad = 180 / math.pi },
@@ -174,9 +169,9 @@ local function parsed(text, input, wrong)
   return list
 end
 
-local field_types <const> = {
-  kind = "string", unit = "string", min = "number", max = "number", above = "number", choices = "table", of = "string",
-  ending = "string", position = "number", help = "string",
+local fields <const> = {
+  kind = "any", default = "any", unit = "string", min = "number", max = "number", above = "number",
+  choices = "table", of = "string", ending = "string", position = "number", help = "string",
 }
 
 local function mistake_in_kind(kind)
@@ -194,13 +189,8 @@ end
 --- What is wrong with the fields of a declaration, nil where nothing is.
 local function mistake_in(input)
   local mistake = suggest.unknown_key(input, fields) or mistake_in_kind(input.kind)
+    or suggest.wrong_type(input, fields)
   if mistake then return mistake end
-  for _, name in ipairs(suggest.keys(field_types)) do
-    local found_type = type(input[name])
-    if found_type ~= "nil" and found_type ~= field_types[name] then
-      return ("%s: a %s expected, found %s"):format(name, field_types[name], found_type)
-    end
-  end
   if input.of == "list" then return "of: a kind of one value expected, found 'list'" end
   if input.of ~= nil and mistake_in_kind(input.of) then return mistake_in_kind(input.of) end
   if input.kind == "choice" or input.of == "choice" then return mistake_in_choices(input.choices) end

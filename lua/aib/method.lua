@@ -62,11 +62,10 @@ end
 
 --- Batch folders, sorted by their numbers; the folder itself where there are none.
 local function folders_of(folder, pattern)
-  local found = kit.numbered(folder, pattern)
   local folders = {}
-  for i, name in ipairs(found) do
-    if aib.system.is_folder(folder .. "/" .. name) then folders[#folders + 1] = { path = folder .. "/" .. name,
-      name = found[i] } end
+  for _, name in ipairs(kit.numbered(folder, pattern)) do
+    local path = folder .. "/" .. name
+    if aib.system.is_folder(path) then folders[#folders + 1] = { path = path, name = name } end
   end
   if #folders == 0 then folders[1] = { path = folder, name = "0" } end
   return folders
@@ -99,16 +98,11 @@ local function choose(folder, options)
   return known, why
 end
 
---- The part of a list of names that belongs to the batch: those after the ones that were used.
-local function take(names, used, n)
-  return table.move(names, used + 1, used + n, 1, {})
-end
-
---- Names for a batch whose files tell none: the next of the list.
+--- Names for a batch whose files tell none: the next of the list, after those that were used.
 local function rename(batch, names, used)
   local n = #batch.names
   if used + n > #names then return end
-  local own = take(names, used, n)
+  local own = table.move(names, used + 1, used + n, 1, {})
   if batch.trajectory then
     local poses = {}
     for i = 1, #batch.trajectory do poses[i] = batch.trajectory[i] end

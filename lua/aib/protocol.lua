@@ -46,12 +46,7 @@ end
 
 local function check_spec(spec, level)
   if type(spec) ~= "table" then error("aib.protocol: a table expected, found " .. type(spec), level + 1) end
-  suggest.check_keys("aib.protocol", spec, fields, level + 1)
-  for name, kind in pairs(fields) do
-    if spec[name] ~= nil and type(spec[name]) ~= kind then
-      error(("aib.protocol: %s: a %s expected, found %s"):format(name, kind, type(spec[name])), level + 1)
-    end
-  end
+  suggest.check_types("aib.protocol", spec, fields, level + 1)
   if not spec.name then error("aib.protocol: name: a string expected", level + 1) end
   if not spec.run then error("aib.protocol: run: a function expected", level + 1) end
 end

@@ -66,7 +66,8 @@ function report.ordered_keys(groups)
     if present[key] then keys[#keys + 1] = key end
     present[key] = nil
   end
-  return table.move(suggest.keys(present), 1, #suggest.keys(present), #keys + 1, keys)
+  for _, key in ipairs(suggest.keys(present)) do keys[#keys + 1] = key end
+  return keys
 end
 
 --- The same text for groups of the same content.
@@ -77,12 +78,7 @@ local function group_id(group)
 end
 
 local function check_options(name, options, level)
-  suggest.check_keys("report:add " .. name, options, add_fields, level + 1)
-  for key, kind in pairs(add_fields) do
-    if options[key] ~= nil and type(options[key]) ~= kind then
-      error(("report:add %s: %s: %s expected, found %s"):format(name, key, kind, type(options[key])), level + 1)
-    end
-  end
+  suggest.check_types("report:add " .. name, options, add_fields, level + 1)
   if options.better and not directions[options.better] then
     error(('report:add %s: better: "lower" or "higher" expected, found "%s"'):format(name, options.better), level + 1)
   end

@@ -32,11 +32,7 @@ function M.read_cloud(files, name) return clouds.read(files:file(name)) end
 local readers = {}
 
 function readers.trajectory(scene)
-  local spec = scene.spec
-  if not spec.poses then return nil end
-  local path = scene.files:path(spec.poses)
-  if aib.system.is_folder(path) then return aib.io.read_trajectory(scene.files:whole_folder(spec.poses)) end
-  return aib.io.read_trajectory(scene.files:file(spec.poses))
+  return scene.spec.poses and aib.io.read_trajectory(scene.files:any(scene.spec.poses))
 end
 
 function readers.names(scene)
@@ -52,9 +48,7 @@ end
 function readers.cameras(scene)
   local source = scene.spec.cameras or scene.spec.poses
   if type(source) ~= "string" then return source end
-  local path = scene.files:path(source)
-  if aib.system.is_folder(path) then return aib.io.read_cameras(scene.files:whole_folder(source)) end
-  return aib.io.read_cameras(scene.files:file(source))
+  return aib.io.read_cameras(scene.files:any(source))
 end
 
 function readers.mesh(scene) return scene.spec.mesh and aib.io.read_mesh(scene.files:file(scene.spec.mesh)) end

@@ -4,6 +4,7 @@
 --- How numbers of frames change over conditions of one scene (soiling levels): the frames are the same views, so that
 --- differences are taken frame by frame, and neighbours are drawn together, since they overlap.
 local aib = require "aib"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -37,8 +38,7 @@ end
 --- The mean of a series of frames and its bootstrap interval. Blocks (10 neighbours by default) are at most a quarter
 --- of the series: longer ones would be the series itself and the interval a point.
 function M.interval(values, options)
-  local how = { block = 10 }
-  for key, value in pairs(options or {}) do how[key] = value end
+  local how = suggest.with({ block = 10 }, options)
   how.block = math.max(1, math.min(how.block, #values // 4))
   return aib.stats.bootstrap(values, how)
 end
@@ -68,8 +68,7 @@ end
 function M.add(report, metric, levels, depends, unit)
   local found = M.of(levels)
   if not found then return nil end
-  local how = { from = levels[1].condition, to = levels[#levels].condition, level = 0.95 }
-  for key, value in pairs(depends or {}) do how[key] = value end
+  local how = suggest.with({ from = levels[1].condition, to = levels[#levels].condition, level = 0.95 }, depends)
   local function add(name, value) report:add(("sensitivity.%s_%s"):format(metric, name), value, {
     unit = unit, n = found.n, options = how, convention = "paired frames, block bootstrap",
   }) end

@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- Tables with known names: sorted keys, and errors for unknown ones that say what was meant.
+--- Tables with known names: sorted keys, both of two in one, and errors for unknown ones that say what was meant.
 local system = require("aib").system
 
 local M = {}
@@ -12,6 +12,21 @@ function M.keys(t)
   for key in pairs(t) do keys[#keys + 1] = key end
   table.sort(keys, function(a, b) return tostring(a) < tostring(b) end)
   return keys
+end
+
+--- Both tables in one, the second over the first; either may be nil.
+function M.with(a, b)
+  local merged = {}
+  for key, value in pairs(a or {}) do merged[key] = value end
+  for key, value in pairs(b or {}) do merged[key] = value end
+  return merged
+end
+
+--- The elements of a list as keys.
+function M.set(list)
+  local set = {}
+  for _, element in ipairs(list) do set[element] = true end
+  return set
 end
 
 --- What to add to "unknown X 'name'": the nearest of the names (a list), or all of them.
@@ -27,6 +42,23 @@ function M.unknown_key(t, known)
       return ("unknown field '%s'%s"):format(tostring(key), M.hint(key, M.keys(known)))
     end
   end
+end
+
+--- The sentence for the first field of `t` that is not of its type in `types` (a table by name, "any" for all); nil
+--- where all are.
+function M.wrong_type(t, types)
+  for _, key in ipairs(M.keys(types)) do
+    local found = type(t[key])
+    if found ~= "nil" and types[key] ~= "any" and found ~= types[key] then
+      return ("%s: a %s expected, found %s"):format(key, types[key], found)
+    end
+  end
+end
+
+--- An error at `level` where a field of `t` is not known or of another type.
+function M.check_types(what, t, types, level)
+  local mistake = M.unknown_key(t, types) or M.wrong_type(t, types)
+  if mistake then error(("%s: %s"):format(what, mistake), (level or 1) + 1) end
 end
 
 --- An error at `level` (as `error` counts) where `t` has a key that `known` has not.

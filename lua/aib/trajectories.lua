@@ -9,6 +9,7 @@
 ---   end
 local aib = require "aib"
 local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -40,8 +41,7 @@ function M.inputs(own)
   }
   add_reading(inputs, "estimate")
   add_reading(inputs, "reference")
-  for key, input in pairs(own) do inputs[key] = input end
-  return inputs
+  return suggest.with(inputs, own)
 end
 
 --- The input of an alignment.
@@ -98,9 +98,9 @@ local function associated(trajectory, path, reference, input, cell)
   check_pairing(trajectory, path, input.by)
   check_pairing(reference, input.reference, input.by)
   local by = way_of_pairing(trajectory, reference, input.by)
-  local options = { by = by, max_gap = input.max_gap, offset = input.offset, convention = input.association }
   local rule = by == "name" and names_rule(trajectory, reference, input.names)
-  for key, value in pairs(rules_of_names[rule] or {}) do options[key] = value end
+  local options = suggest.with({ by = by, max_gap = input.max_gap, offset = input.offset,
+    convention = input.association }, rules_of_names[rule])
   local est, ref, info
   cell:attempt(function() est, ref, info = aib.pose.associate(trajectory, reference, options) end, "pairing")
   cell:add("n_matched", info and info.n_matched or 0, { n = #trajectory, options = { by = by, names = rule or nil } })
@@ -152,8 +152,7 @@ end
 function M.aligned(estimate, mode, options)
   if mode == "none" then return estimate.est end
   local cell = estimate.cell
-  local how = { mode = mode }
-  for key, value in pairs(options or {}) do how[key] = value end
+  local how = suggest.with({ mode = mode }, options)
   local fit = cell:attempt(function() return aib.align.trajectory(estimate.est, estimate.ref, how) end, "alignment")
   if not fit then return nil end
   cell:add("align.scale", fit.transform.scale, { n = fit.n_inliers, options = how })

@@ -123,7 +123,7 @@ Notes
       t:raises("test_report.lua:", function() r:add("x", 1, { unti = "m" }) end)
       t:raises("unknown field 'unti', did you mean 'unit'?", r.add, r, "x", 1, { unti = "m" })
       t:raises('better: "lower" or "higher" expected, found "smaller"', r.add, r, "x", 1, { better = "smaller" })
-      t:raises("unit: string expected, found number", r.add, r, "x", 1, { unit = 3 })
+      t:raises("unit: a string expected, found number", r.add, r, "x", 1, { unit = 3 })
       t:raises("a number expected, found string", r.add, r, "x", "1")
       t:raises("unknown field 'metric', did you mean 'metrics'?", r.table, r, { title = "T", metric = "x" })
       t:raises("metrics: a list of names expected", r.table, r, { title = "T" })

@@ -163,7 +163,7 @@ return aib.test {
     report_of(function(report)
       t:raises("test_page.lua:", function() report:curve { titel = "x" } end)
       t:raises("report:curve: unknown field 'titel', did you mean 'title'?", report.curve, report, { titel = "x" })
-      t:raises("report:curve: values: table expected, found nil", report.curve, report, { title = "x", x = {}, y = {},
+      t:raises("report:curve: values: a table expected, found nil", report.curve, report, { title = "x", x = {}, y = {},
         at = {} })
     end)
   end,

@@ -8,7 +8,6 @@ local failure = require "aib.failure"
 local points = require "aib.evaluation.points"
 local poses = require "aib.evaluation.poses"
 local suggest = require "aib.suggest"
-local with = require "aib.evaluation.with"
 
 local M = {}
 
@@ -100,7 +99,7 @@ local function score_cloud_of_maps(unit, fit, truth, how, input, cell)
   cell:add("cloud.share_kept", (info.n_valid - info.n_unsure) / info.n_valid, { n = info.n_valid })
   local rules = {}
   for _, p in ipairs(fit.parts) do rules[p.batch.confidence and p.batch.rule or "none"] = true end
-  points.add_cloud(cloud, truth, with(how, {
+  points.add_cloud(cloud, truth, suggest.with(how, {
     confidence = cut.min_confidence, confidence_rule = next(rules), stride = cut.stride,
   }), input, cell)
 end
@@ -159,7 +158,7 @@ end
 function M.in_batches(batch, method, truth, input)
   local list = {}
   for _, size in ipairs(batch and batch_sizes(input)[method] or {}) do
-    local how = with(alignment_of(input), { batch = size })
+    local how = suggest.with(alignment_of(input), { batch = size })
     local fit = aib.batches.align(aib.batches.split(batch, truth.names, size), truth.trajectory,
       { outlier_factor = how.outlier_factor })
     if #fit.parts > 0 then

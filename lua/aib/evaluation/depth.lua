@@ -10,7 +10,7 @@
 --- confidence = function()|nil, scales = { by series; false where it is not known } }.
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
-local with = require "aib.evaluation.with"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -27,8 +27,7 @@ local strata <const> = { "inside", "edge", "thin" }
 
 --- Places of the scene's images that have a true depth map.
 local function places_of(truth)
-  local has_truth, places = {}, {}
-  for _, name in ipairs(truth.depth_names) do has_truth[name] = true end
+  local has_truth, places = suggest.set(truth.depth_names), {}
   for i, name in ipairs(truth.names) do places[name] = has_truth[name] and i or nil end
   return places
 end
@@ -245,7 +244,7 @@ function M.add(series, input, cell)
     cell:note(("depth: none of %d frames has a pixel that is valid in both maps"):format(#rows))
   end
   local how = { rule = input.rule, frames_expected = series.n_expected }
-  local how_scaled = with(series.how, how)
+  local how_scaled = suggest.with(series.how, how)
   for _, metric in ipairs(metrics) do
     local from = metric.of_length and of_length or mean
     cell:add("depth." .. metric.name, from[metric.name], {

@@ -4,7 +4,7 @@
 --- Points of a method against the true surface, for the protocol asset_inspection.
 local aib = require "aib"
 local drawings = require "aib.evaluation.drawings"
-local with = require "aib.evaluation.with"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -48,7 +48,7 @@ function M.add_cloud(all, truth, frame_how, input, cell)
     return aib.cloud.score(to_reference, to_estimate, { tau = input.tau })
   end, "points") or { precision = {}, recall = {}, f_score = {} }
   local sampled = not truth.points
-  local how = with(frame_how, { samples = sampled and input.samples or nil, seed = sampled and input.seed or nil })
+  local how = suggest.with(frame_how, sampled and { samples = input.samples, seed = input.seed })
   for _, name in ipairs(distance_metrics) do
     cell:add("cloud." .. name, compared[name], { unit = "m", better = "lower", n = #cloud, options = how })
   end

@@ -80,10 +80,8 @@ end
 
 --- For each image of the scene whether it is registered, 1 or 0.
 function M.add_registered(frames, trajectory, truth, rules)
-  local names, values, is_missing = aib.json.list(), aib.json.list(), {}
-  for _, name in ipairs(aib.pose.registration_rate(trajectory, truth.trajectory, rules).missing) do
-    is_missing[name] = true
-  end
+  local names, values = aib.json.list(), aib.json.list()
+  local is_missing = suggest.set(aib.pose.registration_rate(trajectory, truth.trajectory, rules).missing)
   for i, name in ipairs(truth.names) do names[i], values[i] = name, is_missing[name] and 0 or 1 end
   frames["pose.registration_rate"] = { names = names, values = values }
 end

@@ -4,6 +4,7 @@
 --- What adapters of methods share: files of a folder by their numbers, lists of names, one NPZ file as a batch.
 local aib = require "aib"
 local failure = require "aib.failure"
+local suggest = require "aib.suggest"
 
 local M = {}
 
@@ -53,16 +54,10 @@ function M.names(folder, n, options)
   return names, false
 end
 
-local function set_of(list)
-  local set = {}
-  for _, name in ipairs(list) do set[name] = true end
-  return set
-end
-
 --- The set of the arrays in an NPZ file; empty where there is no such file.
 function M.arrays(path)
   if not aib.system.is_file(path) then return {} end
-  return set_of(aib.io.array_names(path))
+  return suggest.set(aib.io.array_names(path))
 end
 
 local function any_of(set, names)
@@ -115,10 +110,8 @@ end
 ---   cameras             file or folder of aib.io.read_cameras, nil where there is none
 function M.frame_batch(folder, n, source, options)
   local names, told = M.names(folder, n, options)
-  local how = { names = names }
-  for key, value in pairs(source.how or {}) do how[key] = value end
   local batch = { names = names, named = told, rule = "raw", depth = source.depth, confidence = source.confidence,
-    trajectory = aib.io.read_trajectory(source.poses, how) }
+    trajectory = aib.io.read_trajectory(source.poses, suggest.with({ names = names }, source.how)) }
   if source.cameras then
     local first <close> = source.depth(1)
     batch.cameras = M.sized(aib.io.read_cameras(source.cameras, { names = names }), first)

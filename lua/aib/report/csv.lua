@@ -1,31 +1,22 @@
 -- SPDX-FileCopyrightText: the aib authors
 -- SPDX-License-Identifier: MIT
 
---- The records of a report as CSV (RFC 4180): a line each, every number in its shortest exact form.
-local json = require "aib.json"
+--- The records of a report as CSV, a line each.
+local line = require "aib.report.csv_line"
 
-local function quoted(text)
-  return text:find('[",\r\n]') and '"' .. text:gsub('"', '""') .. '"' or text
-end
-
-local function field(value)
-  if value == nil then return "" end
-  if type(value) == "number" then return json.number(value) end
-  return quoted(tostring(value))
-end
+local columns <const> = { "value", "unit", "better", "n", "convention", "note" }
 
 return function(report)
   local keys = report:group_keys()
   local heads = table.move(keys, 1, #keys, 1, {})
-  table.move({ "metric", "value", "unit", "better", "n", "convention", "note" }, 1, 7, #heads + 1, heads)
-  local lines = { table.concat(heads, ",") }
+  table.move({ "metric", table.unpack(columns) }, 1, 1 + #columns, #heads + 1, heads)
+  local lines = { line(heads) }
   for _, r in ipairs(report:records()) do
     local fields = {}
-    for i, key in ipairs(keys) do fields[i] = field(r.group[key]) end
-    for _, key in ipairs { "name", "value", "unit", "better", "n", "convention", "note" } do
-      fields[#fields + 1] = field(r[key])
-    end
-    lines[#lines + 1] = table.concat(fields, ",")
+    for i, key in ipairs(keys) do fields[i] = r.group[key] or "" end
+    fields[#fields + 1] = r.name
+    for _, column in ipairs(columns) do fields[#fields + 1] = r[column] or "" end
+    lines[#lines + 1] = line(fields)
   end
-  return table.concat(lines, "\n") .. "\n"
+  return table.concat(lines)
 end

@@ -40,12 +40,11 @@ local needs_values <const> = { curve = true, timeline = true }
 local function check(kind, spec, level)
   local what = "report:" .. kind
   if type(spec) ~= "table" then error(("%s: a table expected, found %s"):format(what, type(spec)), level + 1) end
-  suggest.check_keys(what, spec, fields[kind], level + 1)
-  for field, expected in pairs(fields[kind]) do
-    local value = spec[field]
+  suggest.check_types(what, spec, fields[kind], level + 1)
+  for _, field in ipairs(suggest.keys(fields[kind])) do
     local may_miss = optional[field] and not (field == "values" and needs_values[kind])
-    if value == nil and not may_miss or value ~= nil and expected ~= "any" and type(value) ~= expected then
-      error(("%s: %s: %s expected, found %s"):format(what, field, expected, type(value)), level + 1)
+    if spec[field] == nil and not may_miss then
+      error(("%s: %s: a %s expected, found nil"):format(what, field, fields[kind][field]), level + 1)
     end
   end
 end

@@ -17,11 +17,17 @@ function depth_frames.inputs(own) end
 ---@return aib.DepthFrameFiles[] frames
 function depth_frames.pair(folders) end
 
----Paths of the files of a folder that fit a pattern, by the name of their frame, and the names in the order of the files.
+---Paths of the files of a folder that fit a pattern, by the name of their frame, and the names in the order of the files;
+---an io error where there is none.
 ---@param folder string
 ---@param pattern string
 ---@return table<string, string> paths, string[] names
 function depth_frames.files_in(folder, pattern) end
+
+---The frame of an image: its name without folder and extension.
+---@param image string
+---@return string frame
+function depth_frames.stem(image) end
 
 ---How the maps of a protocol's inputs are read: options of `aib.depth.evaluate`, which `own` completes.
 ---@param input table

@@ -35,6 +35,11 @@ function instance:path(name) end
 ---@return string
 function instance:file(name) end
 
+---Path of a file or of a folder that is about to be read, remembered.
+---@param name string
+---@return string
+function instance:any(name) end
+
 ---Remembers every file in a folder under the folder's name and returns its path.
 ---@param name string
 ---@return string
