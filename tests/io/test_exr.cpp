@@ -268,6 +268,20 @@ TEST_CASE("exr: a damaged or unsupported file is refused with the defect") {
   CHECK(error_of(scratch.file("x.exr", huge)).find("pixels, at most 134217728 are allowed") !=
         std::string::npos);
   bad = good;
+  bad.channels = {"Z", "Z"};
+  CHECK(refused(bad).ends_with("exr: channel Z comes twice"));
+  const std::size_t compression = text.find("compression");
+  CHECK(error_of(scratch.file("x.exr",
+                              std::string(text).insert(compression, text.substr(compression, 29))))
+            .ends_with("exr: the attribute compression comes twice"));
+  bad = good;
+  bad.compression = 3;
+  bad.data = {0, 0, 999999, 0};
+  CHECK(refused(bad).ends_with(
+      message("exr: 1000000x1 pixels of 4 bytes in a file of ", bad.bytes().size(), " bytes")));
+  CHECK(error_of(scratch.file("x.exr", bad.bytes() + std::string(10000, ' ')))
+            .ends_with("exr: block 0 is damaged (ZIP)"));
+  bad = good;
   bad.first_line_shift = 1;
   CHECK(refused(bad).ends_with("block 0 is not at its place; the file is not complete"));
   CHECK(error_of(scratch.file("x.exr", "")) == ": exr: not an OpenEXR file");
