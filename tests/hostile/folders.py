@@ -42,6 +42,7 @@ JOBS = [
     (BENCHMARK, f"asset_inspection {{}} {QUICK}"),
     (BENCHMARK, "depth {}/methods/sgbm_gtposes/crane/depth {}/gt/crane/depth"),
     (BENCHMARK, "video_depth {}/methods/sgbm_gtposes/crane/depth {}/gt/crane/depth"),
+    (BENCHMARK, "depth_surface {}/methods/sgbm_gtposes/crane/depth {}/gt/crane/depth --cameras {}/gt/crane/poses"),
     (BENCHMARK, "trajectory {}/methods/colmap/crane/sparse {}/gt/crane/poses"),
     (BENCHMARK, "pose_auc {}/methods/glomap/crane/sparse {}/gt/crane/poses"),
     (BENCHMARK, "reconstruction {}/methods/sgbm_colmap/crane/fused.ply {}/gt/crane/mesh.ply --samples 500"),
