@@ -38,7 +38,8 @@ raster::image<float> read_exr_channel(const input_file& file,
 
 namespace detail {
 
-/// Bytes of a file at any place; neighbours are read together.
+/// Bytes of a file at any place. Who goes on reading gets more and more ahead; who jumps about, as
+/// tiles in any order do, gets what is asked for.
 class file_window {
  public:
   explicit file_window(const input_file& file) : file_(file) {}
@@ -50,7 +51,9 @@ class file_window {
                          message(what, ": ", n, " bytes expected, the file has ", file_.size()));
     }
     if (offset < begin_ || offset + n > begin_ + bytes_.size()) {
-      const std::uint64_t wanted = std::max<std::uint64_t>(n, std::uint64_t{1} << 18);
+      const bool goes_on = offset >= begin_ && offset <= begin_ + bytes_.size();
+      ahead_ = goes_on ? std::min(2 * ahead_, most_ahead) : least_ahead;
+      const std::uint64_t wanted = std::max<std::uint64_t>(n, ahead_);
       bytes_.resize(static_cast<std::size_t>(std::min(wanted, file_.size() - offset)));
       file_.read_at(offset, bytes_.data(), bytes_.size());
       begin_ = offset;
@@ -59,9 +62,12 @@ class file_window {
   }
 
  private:
+  static constexpr std::uint64_t least_ahead = 1 << 12, most_ahead = 1 << 18;
+
   const input_file& file_;
   std::vector<char> bytes_;
   std::uint64_t begin_ = 0;
+  std::uint64_t ahead_ = least_ahead;
 };
 
 /// Reads one channel block by block.

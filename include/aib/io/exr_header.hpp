@@ -8,6 +8,7 @@
 #include <aib/io/file.hpp>
 #include <aib/io/limits.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -195,10 +196,7 @@ class exr_header_parser {
     for (;;) {
       exr_channel_info channel;
       channel.name = in.read_name("exr: name of a channel");
-      if (channel.name.empty()) return;
-      for (const exr_channel_info& other : part.channels)
-        if (other.name == channel.name)
-          fail(message("exr: channel ", channel.name, " comes twice"));
+      if (channel.name.empty()) return check_names(part);
       const auto type = in.read<std::int32_t>("exr: type of a channel");
       if (type < 0 || type > 2) fail(message("exr: channel ", channel.name, ": type ", type));
       channel.type = static_cast<exr_pixel>(type);
@@ -212,6 +210,14 @@ class exr_header_parser {
       part.channels.push_back(std::move(channel));
       if (part.channels.size() > 1024) fail("exr: more than 1024 channels");
     }
+  }
+
+  void check_names(const exr_part& part) const {
+    std::vector<std::string_view> names;
+    for (const exr_channel_info& channel : part.channels) names.push_back(channel.name);
+    std::sort(names.begin(), names.end());
+    const auto twice = std::adjacent_find(names.begin(), names.end());
+    if (twice != names.end()) fail(message("exr: channel ", *twice, " comes twice"));
   }
 
   exr_window parse_window(byte_reader& in) {
