@@ -29,34 +29,18 @@ struct cloud_file {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-namespace detail {
-
-/// Calls `visit(index, position)` for each point of a file.
-template <class Visit>
-void for_each_position(const std::filesystem::path& path, const control& control, Visit&& visit) {
-  io::ply_positions positions(path);
-  std::vector<Eigen::Vector3d> block;
-  std::uint64_t index = 0;
-  while (positions.next(block)) {
-    demand_go(control);
-    for (const Eigen::Vector3d& p : block) visit(index++, p);
-  }
-}
-
-}  // namespace detail
-
 /// Looks through a file for its origin, as io::read_ply_cloud finds it.
 [[nodiscard]] inline cloud_file open_cloud(const std::filesystem::path& path,
                                            const control& control = {}) {
-  cloud_file file{.path = path};
-  {
-    const io::ply_positions positions(path);
-    file.size = positions.size();
-    if (positions.is_float()) return file;
-  }
+  io::ply_positions positions(path);
+  cloud_file file{.path = path, .size = positions.size()};
+  if (positions.is_float()) return file;
   cloud::origin_finder origin(file.size);
-  detail::for_each_position(path, control,
-                            [&](std::uint64_t, const Eigen::Vector3d& p) { origin.add(p); });
+  std::vector<Eigen::Vector3d> block;
+  while (positions.next(block)) {
+    demand_go(control);
+    for (const Eigen::Vector3d& p : block) origin.add(p);
+  }
   file.origin = origin.result();
   return file;
 }
@@ -70,13 +54,22 @@ void for_each_point(const cloud_file& file,
                     const control& control,
                     Visit&& visit) {
   const Eigen::Vector3d shift = file.origin - origin;
-  for_each_position(file.path, control, [&](std::uint64_t i, const Eigen::Vector3d& position) {
-    const Eigen::Vector3d local = position - file.origin;
-    const Eigen::Vector3f stored = local.cast<float>();
-    const Eigen::Vector3d moved = shift + stored.cast<double>();
-    const Eigen::Vector3f p = moved.cast<float>();
-    visit(i, point{p.x(), p.y(), p.z()});
-  });
+  io::ply_positions positions(file.path);
+  std::vector<Eigen::Vector3d> block;
+  std::vector<Eigen::Vector3f> stored;
+  std::uint64_t index = 0;
+  while (positions.next(block)) {
+    demand_go(control);
+    // In two loops: of a float that is not stored between its two conversions, x +
+    // double(float(y)), GCC 12 leaves out the rounding from -O2 on.
+    stored.clear();
+    for (const Eigen::Vector3d& p : block) stored.emplace_back((p - file.origin).cast<float>());
+    for (const Eigen::Vector3f& s : stored) {
+      const Eigen::Vector3d moved = shift + s.cast<double>();
+      const Eigen::Vector3f p = moved.cast<float>();
+      visit(index++, point{p.x(), p.y(), p.z()});
+    }
+  }
 }
 
 }  // namespace detail
