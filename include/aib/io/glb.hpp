@@ -198,7 +198,7 @@ class glb_reader {
     content_.label_names.push_back(named(node).empty() ? named(shape) : named(node));
     take_room(content_.label_names.back().size(), 1);
     for (const json& primitive : list(shape, "primitives")) {
-      take_room(1, sizeof(json));
+      take_room(1, 1000);  // time, too, has its limit: a microsecond
       const auto attributes = primitive.find("attributes");
       if (attributes == primitive.end() || !attributes->is_object())
         fail("a primitive without attributes");
