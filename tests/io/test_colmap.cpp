@@ -268,6 +268,12 @@ TEST_CASE("a folder without a model is an input error") {
       io_error);
   CHECK_THROWS_WITH_AS(io::read_colmap(scratch.folder() / "none"),
                        doctest::Contains("no such folder"), io_error);
+  text_model().write(scratch, "half/sparse/0");
+  text_model().write(scratch, "half/sparse/1");
+  std::filesystem::remove(scratch.folder() / "half/sparse/1/images.txt");
+  CHECK_THROWS_WITH_AS(io::read_colmap(scratch.folder() / "half"),
+                       doctest::Contains("images.txt: colmap: not there, though cameras.txt is"),
+                       io_error);
 }
 
 TEST_CASE("COLMAP 4.2's own model of every camera, rigs and odd names is read as expected") {

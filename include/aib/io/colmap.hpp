@@ -65,9 +65,9 @@ enum class colmap_content {
 /// there, their poses win over those in images, as in COLMAP. Quaternions are normalised. Without
 /// points3D the points are empty, and a warning says so.
 ///
-/// Throws io_error where there is no model, format_error where a file is cut off, has bytes after
-/// its last record, an unknown camera model, an image without its camera or a pose that is not
-/// finite.
+/// Throws io_error where there is no model or half of one, format_error where a file is cut off,
+/// has bytes after its last record, an unknown camera model, an image without its camera or a pose
+/// that is not finite.
 [[nodiscard]] std::vector<colmap_model> read_colmap_models(
     const std::filesystem::path& path, colmap_content content = colmap_content::everything);
 
@@ -91,13 +91,30 @@ inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
   return std::nullopt;
 }
 
+/// Throws io_error where only one of the two files is there without which there is no model.
+inline void refuse_half_model(const fs::path& folder) {
+  for (const std::string extension : {".bin", ".txt"}) {
+    for (const auto& [here, away] :
+         {std::pair("cameras", "images"), std::pair("images", "cameras")}) {
+      if (is_there(folder / (here + extension)))
+        throw io_error(folder / (away + extension),
+                       message("colmap: not there, though ", here, extension, " is"));
+    }
+  }
+}
+
 /// Sub-folders with a number for a name that are models, in the order of the numbers.
 inline std::vector<fs::path> numbered_models(const fs::path& folder) {
   std::vector<std::pair<std::uint64_t, fs::path>> found;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const auto number = parse<std::uint64_t>(entry.path().filename().string());
-    if (number && find_encoding(entry.path())) found.emplace_back(*number, entry.path());
+    if (!number) continue;
+    if (!find_encoding(entry.path())) {
+      refuse_half_model(entry.path());
+      continue;
+    }
+    found.emplace_back(*number, entry.path());
   }
   std::sort(found.begin(), found.end());
   std::vector<fs::path> folders;
