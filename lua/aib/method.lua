@@ -75,7 +75,7 @@ local function named_adapter(kind)
   for _, known in ipairs(adapters) do
     if known.kind == kind then return known end
   end
-  error(("aib.method.open: kind: unknown '%s'%s"):format(kind, suggest.hint(kind, M.kinds())), 3)
+  error(("aib.method.open: kind: unknown '%s'%s"):format(kind, suggest.hint(kind, M.kinds())), 4)
 end
 
 --- The adapter that knows the folder, and why.

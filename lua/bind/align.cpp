@@ -62,11 +62,6 @@ std::vector<Eigen::Vector3d> points_of(const sol::object& object, const char* ar
                                ": trajectory or list of points {x, y, z} expected"));
 }
 
-std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
-  for (std::size_t& i : index) ++i;
-  return index;
-}
-
 record as_record(lua_State* state, const align::alignment& a) {
   record r(state);
   r.set("transform", a.transform).set("n_inliers", a.n_inliers);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "camera.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,16 +27,28 @@ std::optional<double> length(const camera& c) {
   return (c.*Length)();
 }
 
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto& info : math::camera_models) names.emplace_back(info.name);
+  return names;
+}
+
 camera make_camera(options& o) {
   const std::string name = o.text("model", "PINHOLE");
   const auto model = math::find_camera_model(name);
-  if (!model) o.reject("model", message("a camera model of COLMAP expected, found '", name, "'"));
+  if (!model) {
+    o.reject("model", message("a camera model of COLMAP expected, found '", name, "'",
+                              suggestion(name, model_names())));
+  }
   camera c{*model, o.count("width", 0), o.count("height", 0), o.numbers("parameters", {})};
   const std::size_t n = math::info(*model).n_parameters;
   if (c.parameters.size() != n) {
     o.reject("parameters",
              message(n, " numbers of ", name, " expected, found ", c.parameters.size()));
   }
+  if (!std::all_of(c.parameters.begin(), c.parameters.end(),
+                   [](double p) { return std::isfinite(p); }))
+    o.reject("parameters", "finite numbers expected");
   o.done();
   return c;
 }

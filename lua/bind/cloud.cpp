@@ -53,22 +53,25 @@ record as_record(lua_State* state, const cloud::box& box) {
   return r;
 }
 
-record as_record(lua_State* state, const comparison& c) {
-  std::vector<double> tau, precision, recall, f_score;
-  for (const auto& s : c.scores) {
+threshold_columns::threshold_columns(const std::vector<cloud::threshold_scores>& scores) {
+  for (const auto& s : scores) {
     tau.push_back(s.tau);
     precision.push_back(s.precision);
     recall.push_back(s.recall);
     f_score.push_back(s.f_score);
   }
+}
+
+record as_record(lua_State* state, const comparison& c) {
+  const threshold_columns at(c.scores);
   record r(state);
   r.set("accuracy", c.accuracy).set("completeness", c.completeness);
   r.set("chamfer", c.chamfer).set("chamfer_mean", c.chamfer_mean);
   r.set("f1_distance", c.f1_distance).set("hausdorff", c.hausdorff);
   r.set("accuracy_median", c.accuracy_median).set("completeness_median", c.completeness_median);
   r.set("accuracy_rmse", c.accuracy_rmse).set("completeness_rmse", c.completeness_rmse);
-  r.set("precision", keyed(state, tau, precision)).set("recall", keyed(state, tau, recall));
-  r.set("f_score", keyed(state, tau, f_score));
+  r.set("precision", keyed(state, at.tau, at.precision));
+  r.set("recall", keyed(state, at.tau, at.recall)).set("f_score", keyed(state, at.tau, at.f_score));
   r.set("n_estimate", c.n_estimate).set("n_reference", c.n_reference);
   r.set("n_dropped", c.n_dropped);
   r.set("estimate_beyond", c.estimate_beyond).set("reference_beyond", c.reference_beyond);
@@ -116,8 +119,11 @@ Vector vector_in(const sol::table& volume, const char* name, const char* expecte
 
 cloud::box box_from(const sol::table& t) {
   constexpr auto expected = "a box { min = {x, y, z}, max = {x, y, z} }";
-  return {vector_in<Eigen::Vector3d>(t, "min", expected),
-          vector_in<Eigen::Vector3d>(t, "max", expected)};
+  const cloud::box box{vector_in<Eigen::Vector3d>(t, "min", expected),
+                       vector_in<Eigen::Vector3d>(t, "max", expected)};
+  if (!(box.low.array() <= box.high.array()).all())
+    throw argument_error("aib.cloud.crop: a box with min at or below max expected");
+  return box;
 }
 
 cloud::oriented_box oriented_box_from(const sol::table& t) {

@@ -35,6 +35,13 @@ std::vector<record> as_records(lua_State* state,
   return list;
 }
 
+std::vector<float> values_of(const sol::object& values, const char* function) {
+  if (const auto* d = get_if<distances>(values)) return {d->values().begin(), d->values().end()};
+  if (const auto* o = get_if<offsets>(values)) return {o->values().begin(), o->values().end()};
+  if (auto numbers = read_if<std::vector<float>>(values)) return std::move(*numbers);
+  throw argument_error(message(function, ": distances, offsets or a list of numbers expected"));
+}
+
 namespace {
 
 std::string print_offsets(const offsets& o) {
@@ -75,33 +82,18 @@ struct scale {
 
 scale scale_of(const sol::object& values, options& o, const char* function) {
   using enum cloud::color_scale;
-  scale s{{}, o.number("max", 0), sequential};
-  if (const auto* d = get_if<distances>(values)) {
-    s.values.assign(d->values().begin(), d->values().end());
-  } else if (const auto* signs = get_if<offsets>(values)) {
-    s.values.assign(signs->values().begin(), signs->values().end());
-    s.colors = diverging;
-  } else if (auto numbers = read_if<std::vector<float>>(values)) {
-    s.values = std::move(*numbers);
-  } else {
-    throw argument_error(message(function, ": distances, offsets or a list of numbers expected"));
-  }
+  scale s{values_of(values, function), o.number("max", 0),
+          get_if<offsets>(values) ? diverging : sequential};
   s.colors = o.choice("scale", s.colors, {{"sequential", sequential}, {"diverging", diverging}});
   o.done();
   return s;
 }
 
 record as_curve(lua_State* state, const std::vector<cloud::threshold_scores>& scores) {
-  std::vector<double> tau, precision, recall, f_score;
-  for (const auto& s : scores) {
-    tau.push_back(s.tau);
-    precision.push_back(s.precision);
-    recall.push_back(s.recall);
-    f_score.push_back(s.f_score);
-  }
+  const threshold_columns at(scores);
   record r(state);
-  r.set("tau", tau).set("precision", precision).set("recall", recall);
-  return r.set("f_score", f_score);
+  r.set("tau", at.tau).set("precision", at.precision).set("recall", at.recall);
+  return r.set("f_score", at.f_score);
 }
 
 /// steps thresholds up to max.

@@ -8,6 +8,7 @@
 #include <aib/raster/downsample.hpp>
 
 #include "depth_reading.hpp"
+#include "raster.hpp"
 #include "stats.hpp"
 #include <algorithm>
 #include <cmath>
@@ -27,17 +28,6 @@ std::string print_map(const depth_map& d) {
 
 std::size_t bytes_of_map(const depth_map& d) { return d.values.size() * sizeof(float); }
 
-depth_map map_of_rows(const std::vector<std::vector<double>>& rows) {
-  depth_map map{raster::image<float>(rows.empty() ? 0 : rows.front().size(), rows.size())};
-  auto to = map.values.begin();
-  for (const auto& row : rows) {
-    if (row.size() != map.values.width())
-      throw argument_error("aib.depth.map: rows of one length expected");
-    to = std::transform(row.begin(), row.end(), to, [](double d) { return static_cast<float>(d); });
-  }
-  return map;
-}
-
 record summary_of(lua_State* state, const depth_map& d) {
   stats::moments valid;
   for (const float v : d.values) {
@@ -53,16 +43,10 @@ void bind_map(lua_State* state) {
       .field("width", [](const depth_map& d) { return d.values.width(); })
       .field("height", [](const depth_map& d) { return d.values.height(); })
       .field("warnings", [](const depth_map& d) { return d.warnings; })
-      .method(
-          "at", {"column", "row"},
-          [](const depth_map& d, std::size_t column, std::size_t row) {
-            const auto& v = d.values;
-            if (column == 0 || row == 0 || column > v.width() || row > v.height()) {
-              throw argument_error(message("depth_map:at: column 1..", v.width(), " and row 1..",
-                                           v.height(), " expected, found ", column, " and ", row));
-            }
-            return v(column - 1, row - 1);
-          })
+      .method("at", {"column", "row"},
+              [](const depth_map& d, std::size_t column, std::size_t row) {
+                return pixel_at(d.values, column, row, "depth_map:at");
+              })
       .method("summary", {}, [](lua_State* l, const depth_map& d) { return summary_of(l, d); })
       .method("scaled", {"factor"}, [](const depth_map& d, double factor) {
         depth_map scaled = d;
@@ -91,7 +75,9 @@ void bind_depth(lua_State* state) {
   bind_map(state);
   module(state, "depth")
       .function("map", {"rows"},
-                [](const std::vector<std::vector<double>>& rows) { return map_of_rows(rows); })
+                [](const std::vector<std::vector<double>>& rows) {
+                  return depth_map{image_of_rows<float>(rows, "aib.depth.map")};
+                })
       .function("downsample", {"depth", "width", "height", "options"},
                 [](const depth_map& d, std::size_t width, std::size_t height, options& o) {
                   const auto rule = rule_option(o);

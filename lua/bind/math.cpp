@@ -100,6 +100,8 @@ void bind_math(lua_State* state) {
                   const sim3 t{o.number("scale", 1), rotation_option(o, sim3{}.rotation),
                                o.get<Eigen::Vector3d>("translation").value_or(sim3{}.translation)};
                   if (!(t.scale > 0)) o.reject("scale", "a scale > 0 expected");
+                  if (!t.translation.allFinite())
+                    o.reject("translation", "finite numbers expected");
                   o.done();
                   return t;
                 })

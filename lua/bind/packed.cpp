@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
 #include <aib/cloud/cloud.hpp>
-#include <aib/cloud/distances.hpp>
-#include <aib/cloud/offsets.hpp>
 #include <aib/mesh/mesh.hpp>
 #ifdef AIB_WITH_NPZ
 #include <aib/report/packed.hpp>
@@ -26,15 +24,6 @@ namespace aib::bind {
 
 namespace {
 
-std::vector<float> values_of(const sol::object& values) {
-  if (const auto* d = get_if<cloud::distances>(values))
-    return {d->values().begin(), d->values().end()};
-  if (const auto* o = get_if<cloud::offsets>(values))
-    return {o->values().begin(), o->values().end()};
-  if (auto numbers = read_if<std::vector<float>>(values)) return *numbers;
-  throw argument_error("aib.packed: distances, offsets or a list of numbers expected");
-}
-
 record packed_values(lua_State* state, std::span<const float> values) {
   const report::range r = report::range_of(values);
   return record(state).set("low", r.low).set("high", r.high).set("data", report::packed(values, r));
@@ -50,7 +39,7 @@ record packed_points(lua_State* state, const cloud::cloud& points, options& o) {
   r.set("n", kept.index.size()).set("n_given", points.size()).set("voxel", kept.voxel);
   r.set("box", as_record(state, p.box)).set("positions", p.data);
   if (!values) return r;
-  const std::vector<float> all = values_of(*values);
+  const std::vector<float> all = values_of(*values, "aib.packed.points");
   if (all.size() != points.size()) {
     throw argument_error(
         message("aib.packed.points: ", points.size(), " values expected, found ", all.size()));
@@ -95,7 +84,7 @@ void bind_packed(lua_State* state) {
                 [](lua_State* l, const mesh::mesh& m) { return packed_mesh(l, m); })
       .function("values", {"values"},
                 [](lua_State* l, const sol::object& values) {
-                  return packed_values(l, values_of(values));
+                  return packed_values(l, values_of(values, "aib.packed.values"));
                 })
       .function("depth", {"est", "ref", "options"},
                 [](lua_State* l, const depth::depth_map& est, const depth::depth_map& ref,

@@ -17,6 +17,7 @@
 
 #include "camera.hpp"
 #include "kit.hpp"
+#include "stats.hpp"
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -102,20 +103,8 @@ unsigned degrees_option(options& o) {
   return static_cast<unsigned>(max_deg);
 }
 
-std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
-  for (std::size_t& i : index) ++i;
-  return index;
-}
-
-record as_record(lua_State* state, const stats::summary& s) {
-  record r(state);
-  r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
-  r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
-  return r;
-}
-
 record as_record(lua_State* state, const pose::pose_errors& e) {
-  return as_record(state, e.summary).set("errors", e.errors).set("index", one_based(e.index));
+  return bind::as_record(state, e.summary).set("errors", e.errors).set("index", one_based(e.index));
 }
 
 pose::auc_options read_auc_options(options& o, const session& s) {
@@ -161,12 +150,12 @@ record as_record(lua_State* state, const pose::segment_errors& e) {
 
 record as_record(lua_State* state, const pose::sub_trajectory_errors& e) {
   record r(state);
-  r.set("length", e.length).set("translation", as_record(state, e.translation));
-  r.set("translation_percent", as_record(state, e.translation_percent));
-  r.set("rotation_deg", as_record(state, e.rotation_deg));
-  r.set("rotation_deg_per_m", as_record(state, e.rotation_deg_per_m));
-  r.set("yaw_deg", as_record(state, e.yaw_deg));
-  return r.set("gravity_deg", as_record(state, e.gravity_deg));
+  r.set("length", e.length).set("translation", bind::as_record(state, e.translation));
+  r.set("translation_percent", bind::as_record(state, e.translation_percent));
+  r.set("rotation_deg", bind::as_record(state, e.rotation_deg));
+  r.set("rotation_deg_per_m", bind::as_record(state, e.rotation_deg_per_m));
+  r.set("yaw_deg", bind::as_record(state, e.yaw_deg));
+  return r.set("gravity_deg", bind::as_record(state, e.gravity_deg));
 }
 
 record as_record(lua_State* state, const pose::worst_pair& w) {
@@ -224,7 +213,7 @@ named_views paired_views(const camera_map& cameras, const camera_map& reference)
 named_views paired_views(const camera_map& cameras, const sol::object& reference) {
   if (const auto known = read_if<camera_map>(reference)) return paired_views(cameras, *known);
   const auto focal = read_if<double>(reference);
-  if (!focal) {
+  if (!focal || !(*focal > 0)) {
     throw argument_error(
         "aib.pose.focal_error: argument 2 (ref): table of cameras by image name, or a focal length "
         "in pixels, expected");

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
+#include "raster.hpp"
+
 #include <aib/raster/color.hpp>
 #include <aib/raster/draw.hpp>
 
@@ -29,27 +31,6 @@ std::string print_labels(const label_image& l) {
 template <class T>
 std::size_t bytes(const raster::image<T>& image) {
   return image.size() * sizeof(T);
-}
-
-/// The pixel at a one-based column and row.
-template <class T>
-const T& at(const raster::image<T>& image, std::size_t column, std::size_t row) {
-  if (column == 0 || row == 0 || column > image.width() || row > image.height()) {
-    throw argument_error(message("column 1..", image.width(), " and row 1..", image.height(),
-                                 " expected, found ", column, " and ", row));
-  }
-  return image(column - 1, row - 1);
-}
-
-label_image labels_of_rows(const std::vector<std::vector<std::uint16_t>>& rows) {
-  label_image labels(rows.empty() ? 0 : rows.front().size(), rows.size());
-  auto to = labels.begin();
-  for (const auto& row : rows) {
-    if (row.size() != labels.width())
-      throw argument_error("aib.raster.labels: rows of one length expected");
-    to = std::copy(row.begin(), row.end(), to);
-  }
-  return labels;
 }
 
 record summary_of(lua_State* state, const color_image& image) {
@@ -84,7 +65,7 @@ void bind_raster(lua_State* state) {
       .method("summary", {}, [](lua_State* l, const color_image& i) { return summary_of(l, i); })
       .method("at", {"column", "row"},
               [](const color_image& i, std::size_t column, std::size_t row) {
-                const raster::rgb& c = at(i, column, row);
+                const raster::rgb& c = pixel_at(i, column, row, "image:at");
                 return std::vector<int>(c.begin(), c.end());
               });
   type<label_image>(state, "label_image", print_labels, bytes<std::uint16_t>)
@@ -93,7 +74,7 @@ void bind_raster(lua_State* state) {
       .method("summary", {}, [](lua_State* l, const label_image& i) { return summary_of(l, i); })
       .method("at", {"column", "row"},
               [](const label_image& l, std::size_t column, std::size_t row) {
-                return at(l, column, row);
+                return pixel_at(l, column, row, "label_image:at");
               })
       .method("mask", {"label"}, [](const label_image& l, std::uint16_t label) {
         label_image mask(l.width(), l.height());
@@ -102,9 +83,10 @@ void bind_raster(lua_State* state) {
         return mask;
       });
   module(state, "raster")
-      .function(
-          "labels", {"rows"},
-          [](const std::vector<std::vector<std::uint16_t>>& rows) { return labels_of_rows(rows); })
+      .function("labels", {"rows"},
+                [](const std::vector<std::vector<std::uint16_t>>& rows) {
+                  return image_of_rows<std::uint16_t>(rows, "aib.raster.labels");
+                })
       .function("contact_sheet", {"pictures", "options"},
                 [](const std::vector<color_image>& pictures, options& o) {
                   const std::size_t columns = o.count("columns", 3);

@@ -4,7 +4,6 @@
 
 #include <aib/stats/moments.hpp>
 #include <aib/stats/quantiles.hpp>
-#include <aib/stats/summary.hpp>
 
 #include "kit.hpp"
 #include <string>
@@ -16,13 +15,6 @@ namespace {
 
 std::string print(const stats::moments& m) {
   return message("moments(", m.count(), " values, mean ", m.mean(), ", std ", m.deviation(), ")");
-}
-
-record as_record(lua_State* state, const stats::summary& s) {
-  record r(state);
-  r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
-  r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
-  return r;
 }
 
 void bind_moments(lua_State* state) {

@@ -4,6 +4,7 @@
 
 #include <aib/stats/bootstrap.hpp>
 #include <aib/stats/moments.hpp>
+#include <aib/stats/summary.hpp>
 
 #include "kit.hpp"
 #include <vector>
@@ -14,6 +15,12 @@ namespace aib::bind {
 inline record& set_moments(record& r, const stats::moments& m) {
   if (m.count() == 0) return r;
   return r.set("mean", m.mean()).set("std", m.deviation()).set("min", m.min()).set("max", m.max());
+}
+
+inline record as_record(lua_State* state, const stats::summary& s) {
+  record r(state);
+  r.set("count", s.count).set("rmse", s.rmse).set("mean", s.mean).set("median", s.median);
+  return r.set("std", s.std).set("min", s.min).set("max", s.max).set("sse", s.sse);
 }
 
 /// The bootstrap interval of a mean: reads the options, which end with it.

@@ -96,8 +96,9 @@ local function anything() return makers[any(kinds)]() end
 --- A value of what a message expects: "cloud", "list of numbers", "number or nil".
 local function of_kind(kind)
   if math.random(12) == 1 then return anything() end
-  local element = kind:match "^list of (.*)s$"
+  local element = kind:match "^list of (.*)$"
   if element then
+    element = element:gsub("^([%w_]+)ies%f[^%w_]", "%1y"):gsub("^([%w_]+)s%f[^%w_]", "%1")
     local list = {}
     for i = 1, math.random(0, 4) do list[i] = of_kind(element) end
     return list

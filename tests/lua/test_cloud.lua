@@ -75,6 +75,9 @@ return aib.test {
     t:raises("unknown option 'taus', did you mean 'tau'?", aib.cloud.compare, on_x(0), on_x(1), { taus = 1 })
     t:raises("argument 2 (ref): cloud expected, found nil", aib.cloud.compare, on_x(0))
     t:raises("no finite point in the estimated cloud", aib.cloud.compare, on_x(), on_x(1))
+    t:raises("a box with min at or below max expected", aib.cloud.crop, on_x(0),
+      { min = { 1, 0, 0 }, max = { 0, 1, 1 } })
+    t:raises("list of lists of 3 numbers expected, found table", aib.cloud.from_points, { { 1, 2 } })
     t:raises("'min' is missing", aib.cloud.crop, on_x(0), { max = { 1, 1, 1 } })
   end,
 

@@ -33,7 +33,9 @@ return aib.test {
     local map = aib.depth.map { { 1, 2, 3, 4 } }
     t:near(aib.depth.downsample(map, 2, 1):at(1, 1), 2, 0)
     t:near(aib.depth.downsample(map, 2, 1, { rule = "floor" }):at(1, 1), 1, 0)
-    t:raises("column 1..4", map.at, map, 5, 1)
+    t:raises("depth_map:at: column 1..4", map.at, map, 5, 1)
+    t:raises("one of 'centre', 'floor' expected, found 'center', did you mean 'centre'?",
+      aib.depth.downsample, map, 2, 1, { rule = "center" })
   end,
 
   ["an accumulator gives means, pooled errors, frames and an interval"] = function(t)
@@ -78,6 +80,11 @@ return aib.test {
     local picture = aib.depth.error_image(estimate, reference, { near = 1, far = 4 })
     t:equal(picture.width, 3 * 2 + 4 * 6)
     t:equal(#picture:at(1, 1), 3)
+    t:raises("image:at: column 1..", picture.at, picture, 0, 1)
+    t:raises("label_image:at: column 1..2 and row 1..1 expected, found 3 and 1",
+      function() return aib.raster.labels({ { 1, 2 } }):at(3, 1) end)
+    t:raises("aib.raster.labels: rows of one length", aib.raster.labels, { { 1, 2 }, { 3 } })
+    t:raises("aib.depth.map: rows of one length", aib.depth.map, { { 1, 2 }, { 3 } })
     local sheet = aib.raster.contact_sheet({ picture, picture }, { columns = 2, width = 30 })
     t:equal(sheet.width, 2 * 36 + 6)
   end,

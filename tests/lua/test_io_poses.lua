@@ -80,6 +80,9 @@ return aib.test {
     local sphere = aib.math.camera { model = "EQUIRECTANGULAR", parameters = { 1000, 500 } }
     t:equal(sphere.fx, nil)
     t:raises("4 numbers of PINHOLE expected, found 1", aib.math.camera, { parameters = { 500 } })
+    t:raises("finite numbers expected", aib.math.camera, { parameters = { 0 / 0, 500, 320, 240 } })
+    t:raises("a camera model of COLMAP expected, found 'PINHOL', did you mean 'PINHOLE'?", aib.math.camera,
+      { model = "PINHOL" })
   end,
 
   ["an array comes back from the NPY file that it is written to"] = function(t)

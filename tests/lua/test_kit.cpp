@@ -169,7 +169,7 @@ TEST_CASE("options have defaults, types and choices") {
         "script:1: aib.sample.options: option 'box': box expected, found number 3");
   CHECK(run("return m.options{shade = 'drak'}") ==
         "script:1: aib.sample.options: option 'shade': one of 'light', 'dark' expected, found "
-        "'drak'");
+        "'drak', did you mean 'dark'?");
 }
 
 TEST_CASE("an option that nobody knows is an error with a suggestion") {

@@ -46,7 +46,9 @@ void options::unknown_choice(const char* name,
                              const std::vector<std::string>& names) const {
   std::string list;
   for (const std::string& n : names) list += (list.empty() ? "'" : ", '") + n + "'";
-  reject(name, message("one of ", list, " expected, found '", found, "'"));
+  const std::string hint = suggestion(found, names);
+  const bool is_near = hint.starts_with(", did you mean");
+  reject(name, message("one of ", list, " expected, found '", found, "'", is_near ? hint : ""));
 }
 
 void options::done() {

@@ -41,6 +41,11 @@ record::record(lua_State* state) : state_(state) {
   lua_pop(state, 1);
 }
 
+std::vector<std::size_t> one_based(std::vector<std::size_t> index) {
+  for (std::size_t& i : index) ++i;
+  return index;
+}
+
 record keyed(lua_State* state, std::span<const double> keys, std::span<const double> values) {
   if (keys.size() != values.size())
     throw argument_error(message("keyed: ", keys.size(), " keys, ", values.size(), " values"));

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "value.hpp"
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace aib::bind {
 
@@ -35,6 +37,9 @@ template <>
 struct value<record> {
   static void push(lua_State* state, const record& r) { r.table().push(state); }
 };
+
+/// Indices as Lua counts.
+std::vector<std::size_t> one_based(std::vector<std::size_t> index);
 
 /// A table from numbers to values, for results at several thresholds: `rra[5]` and `rra[5.0]` are
 /// the same.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "value.hpp"
 
+#include <algorithm>
+
 namespace aib::bind {
 
 namespace {
@@ -42,6 +44,13 @@ std::string type_name(lua_State* state, int index) {
     name = value<std::string>::get(state, -1);
   lua_settop(state, top);
   return name;
+}
+
+std::string plural(const std::string& one) {
+  const std::size_t end = std::min(one.find(' '), one.size());
+  const bool ends_in_y = end > 0 && one[end - 1] == 'y';
+  const std::string word = ends_in_y ? one.substr(0, end - 1) + "ies" : one.substr(0, end) + "s";
+  return word + one.substr(end);
 }
 
 std::string place::text() const {

@@ -189,10 +189,13 @@ struct value<std::filesystem::path> {
   }
 };
 
+/// "integers >= 0", "lists of 3 numbers", "trajectories": several of what `expected` calls one.
+std::string plural(const std::string& one);
+
 /// A table whose elements 1..#t are all T.
 template <class T>
 struct value<std::vector<T>> {
-  static std::string expected() { return "list of " + value<T>::expected() + "s"; }
+  static std::string expected() { return "list of " + plural(value<T>::expected()); }
   static bool is(lua_State* state, int index) {
     if (!lua_istable(state, index)) return false;
     index = lua_absindex(state, index);
