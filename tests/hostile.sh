@@ -8,8 +8,8 @@
 #
 # The collection of good and malformed files (the zoo) through the whole shell under AddressSanitizer
 # and UndefinedBehaviorSanitizer and through the plain one within 1 GiB; made-up calls of every bound
-# function under the sanitizers; injected faults; numbers of threads, locales, instruction sets;
-# made-up files. Builds build/ and build-hostile/, which takes a quarter of an hour.
+# function under the sanitizers; injected faults; how the shell is linked; what must hold of metrics;
+# numbers of threads, locales, instruction sets; made-up files. Builds build/ and build-hostile/, which takes a quarter of an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -46,11 +46,14 @@ part "the zoo through the shell, under the sanitizers" \
 part "made-up calls, under the sanitizers" calls
 part "the zoo within 1 GiB" python3 tests/hostile/zoo.py ../shared $plain
 part "faults" python3 tests/hostile/faults.py . $plain
+part "how the shell is linked" python3 tests/hostile/hardening.py $plain
+properties() { for file in tests/properties/test_*.lua; do $plain "$file" || return; done; }
+part "properties of metrics" properties
 part "scripts that try to get out" $plain tests/lua/test_sandbox.lua
 part "threads and locales" python3 tests/hostile/variants.py $plain build/tests/io/test_io build/tests/stats/test_stats
 part "instruction sets, compilers, ThreadSanitizer" python3 tests/instruction_sets/compare_bits.py .
 part "made-up files" tests/fuzz.sh "${1:-1}"
 part "made-up files, all runs" tests/fuzz.sh --totals
 
-printf '\n%d of 10 parts failed\n' "$failed"
+printf '\n%d of 12 parts failed\n' "$failed"
 [ "$failed" = 0 ]
