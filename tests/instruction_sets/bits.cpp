@@ -10,19 +10,29 @@
 #ifdef AIB_SINGLE
 #include <aib/aib.hpp>
 #else
+#include <aib/align/icp.hpp>
 #include <aib/align/trajectory.hpp>
 #include <aib/cloud/compare.hpp>
+#include <aib/cloud/eth3d.hpp>
+#include <aib/cloud/normals.hpp>
+#include <aib/cloud/offsets.hpp>
+#include <aib/cloud/outliers.hpp>
 #include <aib/core/isa.hpp>
 #include <aib/core/random.hpp>
 #include <aib/depth/accumulate.hpp>
 #include <aib/depth/errors.hpp>
 #include <aib/io/ply_write.hpp>
+#include <aib/mesh/face_scores.hpp>
 #include <aib/mesh/offsets.hpp>
 #include <aib/pose/ape.hpp>
 #include <aib/pose/auc.hpp>
+#include <aib/pose/worst_pairs.hpp>
+#include <aib/render/frame.hpp>
+#include <aib/render/visible.hpp>
 #include <aib/sample/mesh.hpp>
 #include <aib/sample/voxel.hpp>
 #include <aib/stream/compare_clouds.hpp>
+#include <aib/survey/measure.hpp>
 #endif
 
 #include <algorithm>
@@ -108,10 +118,58 @@ void print_points(const char* name, const cloud::cloud& c) {
   for (const double coordinate : sum) print(name, coordinate);
 }
 
-void print_meshes(random_engine& random) {
+/// What looks at the neighbours of points.
+void print_neighbours(random_engine& random) {
+  const cloud::cloud estimate = random_cloud(random, 4001);
+  const cloud::cloud truth = random_cloud(random, 3001);
+  const auto flat = cloud::with_normals(truth, {.neighbours = 8, .threads = threads});
+  print_rounded("offsets", cloud::offsets_along_normals(estimate, flat, threads).mean());
+  const auto kept = cloud::without_statistical_outliers(estimate, {.threads = threads});
+  print("kept", static_cast<double>(kept.size()));
+  const auto dense = cloud::without_radius_outliers(
+      estimate, {.radius = 0.08, .neighbours = 8, .threads = threads});
+  print("dense", static_cast<double>(dense.size()));
+  const std::vector<cloud::laser_scan> scans = {{truth, {0, 0, 9}}};
+  const auto eth3d = cloud::eth3d(estimate, scans, {.tolerances = {0.05}, .threads = threads});
+  print("eth3d", eth3d.scores[0].completeness);
+  const auto fit =
+      align::icp(estimate, truth, {.max_distance = {0.2}, .max_iterations = 5, .threads = threads});
+  print_rounded("icp", fit.rmse);
+}
+
+mesh::mesh some_tetrahedron() {
   mesh::mesh tetrahedron;
   tetrahedron.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return tetrahedron;
+}
+
+/// What casts rays.
+void print_rays(random_engine& random) {
+  const mesh::mesh tetrahedron = some_tetrahedron();
+  const mesh::ray_surface surface(tetrahedron, threads);
+  std::vector<math::view> views;
+  for (const double x : {0.2, 0.3, 0.4})
+    views.push_back(
+        {math::pinhole(64, 48, 60, 60, 32, 24), {Eigen::Matrix3d::Identity(), {x, 0.2, -2}}});
+  const render::view_rays rays(views[0].camera, 64, 48, threads);
+  const auto frame =
+      render::cast_frame(surface, rays, views[0].world_from_camera, {.cast = {.threads = threads}});
+  double sum = 0;
+  for (const float z : frame.depth.values) sum += static_cast<double>(z);
+  print_rounded("rendered", sum);
+  double n = 0;
+  for (const auto seen :
+       render::n_views(surface, random_cloud(random, 2001), views, {.cast = {.threads = threads}}))
+    n += seen;
+  print("visible", n);
+  const auto measured =
+      survey::measure(views, tetrahedron, surface, {.samples = 2000, .threads = threads});
+  print("covered", measured.seen_by(2));
+}
+
+void print_meshes(random_engine& random) {
+  const mesh::mesh tetrahedron = some_tetrahedron();
   const cloud::cloud points = random_cloud(random, 20011);
   const auto offsets = mesh::offsets(points, tetrahedron, threads);
   print("offset", offsets.mean());
@@ -157,6 +215,8 @@ void print_poses(random_engine& random) {
        {paper, vggt, posediffusion, posediffusion_torch, da3, colmap, exact})
     print_rounded(
         "auc", pose::auc(e, r, {.max_deg = 90, .convention = convention, .threads = threads}).auc);
+  const auto worst = pose::worst_pairs(e, r, {.n = 30, .threads = threads});
+  print_rounded("worst", worst.back().rotation_deg);
   const align::alignment fit = align::trajectory(e, r);
   print_rounded("scale", fit.transform.scale);
   print_rounded("rmse", pose::ape(fit.transform * e, r).summary.rmse);
@@ -177,4 +237,6 @@ int main(int count, char** arguments) {
   print_frames(random);
   print_poses(random);
   print_stream(random);
+  print_neighbours(random);
+  print_rays(random);
 }
