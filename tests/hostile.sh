@@ -9,7 +9,8 @@
 # The collection of good and malformed files (the zoo) through the whole shell under AddressSanitizer
 # and UndefinedBehaviorSanitizer and through the plain one within 1 GiB; made-up calls of every bound
 # function under the sanitizers; injected faults; how the shell is linked; what must hold of metrics;
-# numbers of threads, locales, instruction sets; made-up files. Builds build/ and build-hostile/, which takes a quarter of an hour.
+# numbers of threads, locales, instruction sets; made-up files. Builds build/ and build-hostile/,
+# which takes a quarter of an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -81,7 +81,8 @@ show("mesh", aib.mesh.compare(est, mesh, { samples = samples, tau = 0.5 }))
 show("mesh offsets", aib.mesh.offsets(est, mesh):summary())
 show("faces", aib.mesh.face_scores(est, mesh, { samples = samples, tau = 0.5 }))
 aib.system.write_text(folder .. "/l.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
-  .. "property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty int label\nend_header\n"
+  .. "property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+  .. "property int label\nend_header\n"
   .. "0 0 0\n10 0 0\n10 10 0\n0 10 0\n3 0 1 2 4\n3 0 2 3 7\n")
 local wall = aib.io.read_mesh(folder .. "/l.ply")
 local on_wall = aib.sample.mesh(wall, { n = 9000 })
