@@ -18,6 +18,7 @@
 #include <aib/cloud/neighbours.hpp>
 #include <aib/cloud/normals.hpp>
 #include <aib/cloud/offsets.hpp>
+#include <aib/cloud/origin.hpp>
 #include <aib/cloud/outliers.hpp>
 #include <aib/cloud/point_tree.hpp>
 #include <aib/cloud/positions.hpp>

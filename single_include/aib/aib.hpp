@@ -189,6 +189,7 @@ double quantile_in_place(std::span<Scalar> values,
   const double share = place - static_cast<double>(below);
   if (share == 0 || rule == quantile_rule::lower) return low;
   const double high = static_cast<double>(*std::min_element(nth + 1, values.end()));
+  if (low == high) return low;  // of two infinities too
   return rule == quantile_rule::midpoint ? (low + high) / 2 : low + (high - low) * share;
 }
 
@@ -1450,15 +1451,6 @@ struct cloud {
   }
 };
 
-/// The origin that readers give a cloud whose box is [low, high]: 0 where floats hold it well
-/// (|coordinate| < 1024), else the box centre in whole units.
-[[nodiscard]] inline Eigen::Vector3d natural_origin(const Eigen::Vector3d& low,
-                                                    const Eigen::Vector3d& high) {
-  if (low.cwiseAbs().maxCoeff() < 1024 && high.cwiseAbs().maxCoeff() < 1024)
-    return Eigen::Vector3d::Zero();
-  return ((low + high) / 2).array().round();
-}
-
 }  // namespace aib::cloud
 
 // aib/cloud/box.hpp
@@ -1501,16 +1493,75 @@ struct box {
 
 }  // namespace aib::cloud
 
+// aib/cloud/origin.hpp
+
+namespace aib::cloud {
+
+/// What points near a position are counted from: 0 where floats hold it well (|coordinate| < 1024),
+/// else the position in whole units.
+[[nodiscard]] inline Eigen::Vector3d natural_origin(const Eigen::Vector3d& centre) {
+  if (centre.cwiseAbs().maxCoeff() < 1024) return Eigen::Vector3d::Zero();
+  return centre.array().round();
+}
+
+/// Finds what the points of a cloud are counted from: 0 where all coordinates are below 1024, else
+/// the middle of their box in whole units.
+///
+/// A box longer than 4096 may be due to a few strays, and floats counted from its middle would not
+/// hold the others: there it is the natural origin of the medians of the coordinates, of about a
+/// thousand points taken evenly.
+class origin_finder {
+ public:
+  /// n   how many positions will be added
+  explicit origin_finder(std::size_t n) : step_(n / 1024 + 1) {}
+
+  /// The next position. One that is not finite has no part in the origin.
+  void add(const Eigen::Vector3d& p) {
+    const bool sampled = until_sample_ == 0;
+    until_sample_ = sampled ? step_ - 1 : until_sample_ - 1;
+    if (!p.allFinite()) return;
+    all_.add(p);
+    if (sampled || sample_.empty()) sample_.push_back(p);
+  }
+
+  [[nodiscard]] Eigen::Vector3d result() const {
+    if (all_.empty()) return Eigen::Vector3d::Zero();
+    if (all_.size().maxCoeff() > 4096) return natural_origin(median());
+    const bool near = all_.low.minCoeff() > -1024 && all_.high.maxCoeff() < 1024;
+    return near ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(all_.centre().array().round());
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d median() const {
+    std::vector<double> coordinates(sample_.size());
+    Eigen::Vector3d middle;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < sample_.size(); ++i) coordinates[i] = sample_[i][k];
+      middle[k] = stats::quantile_in_place<double>(coordinates, 0.5, stats::quantile_rule::lower);
+    }
+    return middle;
+  }
+
+  std::size_t step_;
+  std::size_t until_sample_ = 0;
+  box all_;
+  std::vector<Eigen::Vector3d> sample_;
+};
+
+}  // namespace aib::cloud
+
 // aib/cloud/positions.hpp
 
 namespace aib::cloud {
 
-/// Whether the three coordinates are finite.
+/// Whether the three coordinates are finite, and so are squared distances between such points in
+/// float: beyond 2^62 a coordinate counts as infinite.
 [[nodiscard]] inline bool is_finite(const Eigen::Vector3f& p) {
-  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+  constexpr float largest = 0x1p62F;
+  return std::abs(p.x()) <= largest && std::abs(p.y()) <= largest && std::abs(p.z()) <= largest;
 }
 
-/// Positions in double as the float points of a cloud, counted from their natural origin.
+/// Positions in double as the float points of a cloud, see origin_finder.
 struct placed_points {
   Eigen::Vector3d origin;
   std::vector<Eigen::Vector3f> points;
@@ -1520,13 +1571,10 @@ struct placed_points {
 /// they are and have no part in the origin.
 template <class Position>
 [[nodiscard]] placed_points place(std::size_t n, Position&& position) {
-  box all;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d p = position(i);
-    if (p.allFinite()) all.add(p);
-  }
+  origin_finder origin(n);
+  for (std::size_t i = 0; i < n; ++i) origin.add(position(i));
   placed_points placed;
-  placed.origin = all.empty() ? Eigen::Vector3d(0, 0, 0) : natural_origin(all.low, all.high);
+  placed.origin = origin.result();
   placed.points.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d p = position(i) - placed.origin;
@@ -3579,7 +3627,7 @@ inline namespace AIB_ISA {
 class distances {
  public:
   /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
-  /// brought to one origin in double first.
+  /// brought to one origin in double first. Infinite from 1.8e19 on, whose square is no float.
   ///
   /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
   /// not positive.
@@ -4765,25 +4813,34 @@ void clear_unless_all(std::vector<T>& values, std::size_t n) {
 
 }  // namespace detail
 
-/// The points of several clouds in one, in their order, counted from the origin of the first that
-/// has points. Normals, colors and labels stay where every cloud with points has them.
+/// The points of several clouds in one, in their order. They keep the origin of clouds that share
+/// one; others are counted from a new one, see origin_finder. Normals, colors and labels stay where
+/// every cloud with points has them.
 [[nodiscard]] inline cloud joined(std::span<const cloud* const> clouds) {
   cloud all;
+  std::vector<const cloud*> parts;
+  std::vector<std::size_t> begins;
   for (const cloud* c : clouds) {
-    if (all.empty()) all.origin = c->origin;
-    const Eigen::Vector3d shift = c->origin - all.origin;
-    if (shift.isZero(0)) {
-      detail::extend(all.points, c->points);
-    } else {
-      for (const Eigen::Vector3f& p : c->points) {
-        const Eigen::Vector3d moved = shift + p.cast<double>();
-        all.points.push_back(moved.cast<float>());
-      }
-    }
+    detail::extend(all.warnings, c->warnings);
+    if (c->empty()) continue;
+    parts.push_back(c);
+    begins.push_back(all.size());
+    detail::extend(all.points, c->points);
     detail::extend(all.normals, c->normals);
     detail::extend(all.colors, c->colors);
     detail::extend(all.labels, c->labels);
-    detail::extend(all.warnings, c->warnings);
+  }
+  if (parts.empty()) return all;
+  all.origin = parts.front()->origin;
+  const auto elsewhere = [&](const cloud* c) { return c->origin != all.origin; };
+  if (std::any_of(parts.begin(), parts.end(), elsewhere)) {
+    placed_points placed = place(all.size(), [&](std::size_t i) {
+      const auto part = std::upper_bound(begins.begin(), begins.end(), i) - begins.begin() - 1;
+      return Eigen::Vector3d(parts[static_cast<std::size_t>(part)]->origin +
+                             all.points[i].cast<double>());
+    });
+    all.origin = placed.origin;
+    all.points = std::move(placed.points);
   }
   detail::clear_unless_all(all.normals, all.size());
   detail::clear_unless_all(all.colors, all.size());
@@ -7675,7 +7732,7 @@ struct plane_errors_summary {
 
 /// Planarity and orientation errors of walls, decks and panels, one plane a label; 0 is no plane.
 /// Both planes are fitted to the pixels valid in both maps, by least squares of distances. A label
-/// with fewer than three such pixels, or with all of them in a row, is left out.
+/// with fewer than three such pixels, or with all of them in a row of the image, is left out.
 ///
 /// The estimate is taken as it is: iBims-1 scales it by the median of each plane first, for which
 /// fit it (alignment::median) with the plane as mask.
@@ -7722,7 +7779,7 @@ inline std::map<std::uint16_t, plane_errors_summary> plane_errors(
   check_size("depth::plane_errors", estimate, "rays", rays.view());
   check_size("depth::plane_errors", estimate, "label image", planes);
   struct point_pairs {
-    std::vector<Eigen::Vector3d> estimate, reference;
+    std::vector<Eigen::Vector3d> sight, estimate, reference;
   };
   std::map<std::uint16_t, point_pairs> by_label;
   for (std::size_t y = 0; y < estimate.height; ++y) {
@@ -7731,14 +7788,17 @@ inline std::map<std::uint16_t, plane_errors_summary> plane_errors(
                           is_valid(reference(x, y)) && !std::isnan(rays(x, y).x());
       if (!counts) continue;
       point_pairs& pairs = by_label[planes(x, y)];
+      pairs.sight.push_back(point_at(rays(x, y), 1));
       pairs.estimate.push_back(point_at(rays(x, y), static_cast<double>(estimate(x, y))));
       pairs.reference.push_back(point_at(rays(x, y), static_cast<double>(reference(x, y))));
     }
   }
   std::map<std::uint16_t, plane_errors_summary> result;
   for (const auto& [label, pairs] : by_label) {
+    // Points of a row span the plane of their sight lines, by the rounding of their depths alone.
+    const bool in_a_row = !detail::fit_plane(pairs.sight);
     const auto e = detail::fit_plane(pairs.estimate), r = detail::fit_plane(pairs.reference);
-    if (!e || !r) continue;
+    if (in_a_row || !e || !r) continue;
     const double angle = angle_between(e->normal, r->normal);
     result[label] = {.flatness = e->flatness,
                      .orientation = std::min(angle, std::numbers::pi - angle),
@@ -8090,7 +8150,7 @@ struct surface_error_summary {
 /// An error along the ray shrinks by the cosine of the angle of incidence where the surface is seen
 /// at a slant: distance = |e - r| * |n . ray|, n the normal of the reference. Throws
 /// undefined_error, with the counts, if no pixel is valid in both; argument_error if sizes differ
-/// or the camera has no focal length.
+/// or the camera has no focal length > 0.
 [[nodiscard]] surface_error_summary surface_errors(raster::view<const float> estimate,
                                                    raster::view<const float> reference,
                                                    const math::camera& camera,
@@ -8128,6 +8188,10 @@ inline surface_distances measure_surface(raster::view<const float> estimate,
   const bool slanted = o.distance == surface_distance::normal;
   const normal_image normal = slanted ? normals(reference, ray, o.normals) : normal_image();
   const double focal = (camera.fx() + camera.fy()) / 2;
+  if (!(focal > 0 && std::isfinite(focal))) {
+    throw argument_error(
+        message("depth::surface_errors: a focal length > 0 expected, found ", focal));
+  }
   surface_distances found;
   for (std::size_t y = 0; y < reference.height; ++y) {
     for (std::size_t x = 0; x < reference.width; ++x) {
@@ -8284,6 +8348,9 @@ class input_file {
   /// Reads exactly `n` bytes at `offset`. Throws format_error where the file ends before.
   void read_at(std::uint64_t offset, void* to, std::size_t n) const;
 
+  /// The first `n` bytes, or all where there are fewer.
+  [[nodiscard]] std::string begin(std::uint64_t n) const;
+
  private:
   struct closer {
     void operator()(std::FILE* f) const { std::fclose(f); }
@@ -8381,15 +8448,19 @@ inline void input_file::read_at(std::uint64_t offset, void* to, std::size_t n) c
   }
 }
 
+inline std::string input_file::begin(std::uint64_t n) const {
+  std::string bytes(static_cast<std::size_t>(std::min(n, size_)), '\0');
+  read_at(0, bytes.data(), bytes.size());
+  return bytes;
+}
+
 inline std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   const input_file file(path);
   if (file.size() > max_bytes) {
     throw format_error(path,
                        message("at most ", max_bytes, " bytes expected, found ", file.size()));
   }
-  std::string content(static_cast<std::size_t>(file.size()), '\0');
-  file.read_at(0, content.data(), content.size());
-  return content;
+  return file.begin(file.size());
 }
 
 inline output_file::output_file(std::filesystem::path path)
@@ -8481,6 +8552,39 @@ namespace aib::io {
 
 }  // namespace aib::io
 
+// aib/io/numbers.hpp
+
+namespace aib::io {
+
+/// Takes the next number off the front of a line, in no locale; nothing, and the line as it was,
+/// where the next field is not a number or the line is at its end. Fields are parted by the
+/// characters of `separators`. "nan" and "inf" are numbers, a leading + is allowed, what is too
+/// small for the type is 0 and what is too large no number.
+template <class Number = double>
+[[nodiscard]] inline std::optional<Number> take_number(  // inline: GCC's hint, 5% of a text cloud
+    std::string_view& line,
+    std::string_view separators = " \t\r\v\f") {
+  const auto is_separator = [&](char c) { return separators.find(c) != std::string_view::npos; };
+  std::size_t at = 0;
+  while (at < line.size() && is_separator(line[at])) ++at;
+  if (at + 1 < line.size() && line[at] == '+' && line[at + 1] != '-') ++at;
+  Number value{};
+  const char* const last = line.data() + line.size();
+  const auto [end, code] = std::from_chars(line.data() + at, last, value);
+  if (code == std::errc::invalid_argument || (end != last && !is_separator(*end)))
+    return std::nullopt;
+  if (code == std::errc::result_out_of_range) {
+    const std::string_view text(line.data() + at, static_cast<std::size_t>(end - line.data()) - at);
+    if (text.find("e-") == std::string_view::npos && text.find("E-") == std::string_view::npos)
+      return std::nullopt;
+    value = 0;
+  }
+  line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  return value;
+}
+
+}  // namespace aib::io
+
 // aib/io/text.hpp
 
 namespace aib::io {
@@ -8491,6 +8595,13 @@ namespace aib::io {
   const std::size_t first = text.find_first_not_of(blank);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// The text with small letters for the 26 capital ones, in every locale.
+[[nodiscard]] inline std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
 }
 
 /// The fields of a line: parted by `separator`, or by runs of blanks where it is 0. Fields are
@@ -8516,16 +8627,10 @@ inline void split(std::string_view line,
   }
 }
 
-/// The number that the whole text is, in no locale; nothing where it is not one. "nan" and "inf"
-/// are numbers, a leading + is allowed.
+/// The number that the whole text is, see take_number; nothing where it is not one.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  Number value{};
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (code != std::errc()) return std::nullopt;
-  return value;
+  return take_number<Number>(text, "");
 }
 
 /// Walks the lines of a text: LF or CRLF, the last with or without an end; a byte order mark is
@@ -8989,17 +9094,11 @@ array make_array(std::vector<std::size_t> shape, std::span<const T> values) {
 
 inline array read_npy(const std::filesystem::path& path) {
   const input_file file(path);
-  const auto part = [&](std::uint64_t offset, std::uint64_t n) {
-    std::string bytes(static_cast<std::size_t>(std::min(n, file.size() - offset)), '\0');
-    file.read_at(offset, bytes.data(), bytes.size());
-    return bytes;
-  };
-  const std::string start = part(0, 12);
-  const detail::npy_preamble preamble = detail::read_npy_preamble(start, path);
-  const std::string text = part(0, preamble.text_begin + preamble.text_size);
-  detail::npy_header header = detail::read_npy_header(text, file.size(), path);
-  std::string elements =
-      part(header.begin, *detail::element_count(header.shape) * size_of(header.type));
+  const detail::npy_preamble preamble = detail::read_npy_preamble(file.begin(12), path);
+  detail::npy_header header = detail::read_npy_header(
+      file.begin(preamble.text_begin + preamble.text_size), file.size(), path);
+  std::string elements(*detail::element_count(header.shape) * size_of(header.type), '\0');
+  file.read_at(header.begin, elements.data(), elements.size());
   return detail::make_array(std::move(header), std::move(elements));
 }
 
@@ -9029,6 +9128,32 @@ inline void write_npy(const std::filesystem::path& path, const array& a) {
 
 }  // namespace aib::io
 
+// aib/mesh/mesh.hpp
+
+namespace aib::mesh {
+
+using triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles over shared vertices. A vertex lies at `origin + vertices[i]`, as a point of a cloud
+/// does.
+///
+/// `labels` is empty or one a triangle; `label_names[k]` names label k where the source does.
+struct mesh {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> vertices = {};
+  std::vector<triangle> triangles = {};
+  std::vector<std::uint32_t> labels = {};
+  std::vector<std::string> label_names = {};
+  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
+
+  [[nodiscard]] bool empty() const { return triangles.empty(); }
+  [[nodiscard]] Eigen::Vector3d position(std::size_t vertex) const {
+    return origin + vertices[vertex].cast<double>();
+  }
+};
+
+}  // namespace aib::mesh
+
 // aib/io/positions.hpp
 
 namespace aib::io {
@@ -9039,18 +9164,11 @@ struct float_positions {
   std::vector<Eigen::Vector3f> points = {};
 };
 
-/// Double positions as floats from the natural origin of their finite ones.
+/// Double positions as floats, see cloud::origin_finder.
 [[nodiscard]] inline float_positions to_floats(std::span<const Eigen::Vector3d> positions) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinite);
-  Eigen::Vector3d high = -low;
-  for (const Eigen::Vector3d& p : positions) {
-    if (!p.allFinite()) continue;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  float_positions result;
-  if (low[0] <= high[0]) result.origin = cloud::natural_origin(low, high);
+  cloud::origin_finder origin(positions.size());
+  for (const Eigen::Vector3d& p : positions) origin.add(p);
+  float_positions result{.origin = origin.result()};
   result.points.reserve(positions.size());
   for (const Eigen::Vector3d& p : positions)
     result.points.emplace_back((p - result.origin).cast<float>());
@@ -9078,6 +9196,34 @@ struct float_positions {
   return message(n, " of ", points.size(), " ", name, " are not finite");
 }
 
+/// Gives a cloud the positions and the warnings that its reader owes about them.
+inline void set_positions(cloud::cloud& cloud, float_positions positions) {
+  cloud.origin = positions.origin;
+  cloud.points = std::move(positions.points);
+  if (cloud.empty()) cloud.warnings.push_back("no points");
+  if (auto warning = non_finite_warning(cloud.points, "points"))
+    cloud.warnings.push_back(std::move(*warning));
+}
+
+/// Gives a mesh, which has its triangles, its vertices and the warnings that its reader owes.
+inline void set_vertices(mesh::mesh& mesh, float_positions vertices) {
+  mesh.origin = vertices.origin;
+  mesh.vertices = std::move(vertices.points);
+  if (mesh.triangles.empty()) mesh.warnings.push_back("no triangles");
+  if (auto warning = non_finite_warning(mesh.vertices, "vertices"))
+    mesh.warnings.push_back(std::move(*warning));
+}
+
+/// The label that a number stands for: 0 where it is none.
+[[nodiscard]] inline std::uint32_t label_of(double number) {
+  return number >= 0 && number < 4294967296.0 ? static_cast<std::uint32_t>(number) : 0;
+}
+
+/// The channel of a colour, a number of 0 to 255; what is beyond, or NaN, becomes its nearest end.
+[[nodiscard]] inline std::uint8_t channel_of(double number) {
+  return number > 0 ? static_cast<std::uint8_t>(std::min(number, 255.0)) : std::uint8_t{0};
+}
+
 }  // namespace aib::io
 
 // aib/io/limits.hpp
@@ -9085,14 +9231,15 @@ struct float_positions {
 namespace aib::io {
 
 /// How much a file may hold: for readers of files that strangers give. What is packed (EXR, PNG,
-/// JPEG, NPZ, PCD) is refused before memory is asked for; of other formats, which need as much
+/// JPEG, NPZ, PCD, GLB) is refused before memory is asked for; of other formats, which need as much
 /// memory as the file has bytes, what was read is counted.
 struct limits {
   std::uint64_t max_pixels = std::uint64_t{1} << 27;  ///< of a picture or a depth map
   /// Points of a cloud; vertices, and triangles, of a mesh.
   std::uint64_t max_points = std::numeric_limits<std::uint64_t>::max();
-  /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size is
-  /// refused where it needs more than `max_bytes`: arrays hardly compress so well, bombs do.
+  /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size, and a
+  /// GLB file whose nodes repeat its meshes to that much, is refused where it needs more than
+  /// `max_bytes`: arrays hardly compress so well, bombs do.
   double max_ratio = 100;
   std::uint64_t max_bytes = std::uint64_t{1} << 30;
 };
@@ -9142,7 +9289,7 @@ struct npz_place {
 
 /// An NPZ file: a zip of NPY arrays, stored or deflated, also beyond 4 GB (zip64). Sizes and places
 /// come from the central directory, contents are checked against their CRC-32. Members are read
-/// when asked for.
+/// when asked for; of two of the same name there is the last alone, as NumPy has it.
 ///
 /// Needs zlib.
 /// Source: PKWARE, APPNOTE.TXT 6.3.10; numpy.savez.
@@ -9155,6 +9302,8 @@ class npz_file {
 
   /// Names of the arrays, without ".npy", in the order of the file.
   [[nodiscard]] std::vector<std::string> names() const;
+  /// The same for a message: "a, b, c".
+  [[nodiscard]] std::string list() const;
   [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
 
   /// Reads an array. Throws argument_error where there is none of that name, format_error where it
@@ -9211,6 +9360,7 @@ class npz_file {
   input_file file_;
   io::limits limits_;
   std::vector<member> members_;
+  std::map<std::string, std::size_t, std::less<>> places_;  ///< of members_, by name
 };
 
 /// All arrays of an NPZ file by name are too much at once as a rule; this reads one.
@@ -9284,7 +9434,12 @@ inline npz_file::npz_file(const std::filesystem::path& path, const io::limits& l
     member m = read_entry(in);
     if (!m.name.ends_with(".npy")) continue;
     m.name.resize(m.name.size() - 4);
-    members_.push_back(std::move(m));
+    const auto [known, is_new] = places_.try_emplace(m.name, members_.size());
+    if (is_new) {
+      members_.push_back(std::move(m));
+    } else {
+      members_[known->second] = std::move(m);
+    }
   }
 }
 
@@ -9292,6 +9447,12 @@ inline std::vector<std::string> npz_file::names() const {
   std::vector<std::string> names;
   for (const member& m : members_) names.push_back(m.name);
   return names;
+}
+
+inline std::string npz_file::list() const {
+  std::string text;
+  for (const member& m : members_) text += (text.empty() ? "" : ", ") + m.name;
+  return text;
 }
 
 inline array npz_file::read(std::string_view name) const {
@@ -9430,17 +9591,14 @@ inline void npz_file::read_zip64(std::string_view extra,
 }
 
 inline const npz_file::member* npz_file::find(std::string_view name) const {
-  const auto m = std::find_if(members_.begin(), members_.end(),
-                              [&](const member& one) { return one.name == name; });
-  return m == members_.end() ? nullptr : &*m;
+  const auto place = places_.find(name);
+  return place == places_.end() ? nullptr : &members_[place->second];
 }
 
 inline const npz_file::member& npz_file::get(std::string_view name) const {
   if (const member* m = find(name)) return *m;
-  std::string known;
-  for (const member& m : members_) known += message(known.empty() ? "" : ", ", m.name);
   throw argument_error(
-      message(path().string(), ": npz: no array '", name, "'; there are: ", known));
+      message(path().string(), ": npz: no array '", name, "'; there are: ", list()));
 }
 
 inline std::uint64_t npz_file::data_offset(const member& m) const {
@@ -9508,23 +9666,19 @@ namespace aib::io {
 inline cloud::cloud cloud_of_array(const array& a, const std::filesystem::path& path) {
   if (a.shape.size() < 2 || a.shape.back() != 3)
     throw format_error(path, message("an array of N x 3 expected, found ", text_of_shape(a.shape)));
-  cloud::cloud result;
+  float_positions positions;
   const std::size_t n = a.size() / 3;
   if (a.type == dtype::f4 || a.type == dtype::f2) {
     const std::vector<float> values = a.values<float>();
     for (std::size_t i = 0; i < n; ++i)
-      result.points.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+      positions.points.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
   } else {
-    std::vector<Eigen::Vector3d> positions;
-    for (std::size_t i = 0; i < n; ++i)
-      positions.emplace_back(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
-    auto floats = to_floats(positions);
-    result.origin = floats.origin;
-    result.points = std::move(floats.points);
+    std::vector<Eigen::Vector3d> exact;
+    for (std::size_t i = 0; i < n; ++i) exact.emplace_back(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
+    positions = to_floats(exact);
   }
-  if (result.empty()) result.warnings.push_back("no points");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  cloud::cloud result;
+  set_positions(result, std::move(positions));
   return result;
 }
 
@@ -9546,10 +9700,8 @@ inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
                                    std::string key = {},
                                    const limits& limits = {}) {
   const npz_file file(path, limits);
-  std::string names;
   std::vector<std::string> candidates;
   for (const std::string& name : file.names()) {
-    names += (names.empty() ? "" : ", ") + name;
     if (file.is_unreadable(name)) continue;
     const auto shape = file.read_header(name).shape;
     if (shape.size() >= 2 && shape.back() == 3) candidates.push_back(name);
@@ -9562,7 +9714,7 @@ inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
     throw format_error(path, message("npz: ",
                                      key.empty() ? "which array holds the points?"
                                                  : message("no array \"", key, "\";"),
-                                     " There are ", names));
+                                     " There are ", file.list()));
   const array points = file.read(key);
   cloud::cloud result = cloud_of_array(points, path);
   for (const char* name : {"colors", "rgb"}) {
@@ -9583,12 +9735,172 @@ inline cloud::cloud read_npz_cloud(const std::filesystem::path& path,
 
 }  // namespace aib::io
 
+// aib/io/file_kind.hpp
+
+namespace aib::io {
+
+/// Formats of clouds, meshes, depth maps and images that aib knows of; not all of them are read.
+enum class file_kind {
+  unknown,
+  colmap_map,  ///< COLMAP's stereo/depth_maps/*.bin
+  dmap,        ///< OpenMVS depth map
+  e57,
+  exr,
+  glb,
+  gltf,
+  jpeg,
+  las,  ///< LAS or LAZ
+  npy,
+  npz,
+  obj,
+  pcd,
+  pfm,
+  ply,
+  png,
+  stl,
+  text_points,  ///< XYZ, CSV, PTS
+};
+
+/// The extension in lower case, with its dot.
+[[nodiscard]] inline std::string extension_of(const std::filesystem::path& path) {
+  return lower_case(path.extension().string());
+}
+
+namespace detail {
+
+/// "480&270&1&": what COLMAP writes before its dense maps.
+inline bool is_colmap_map(std::string_view begin) {
+  std::size_t n_fields = 0;
+  bool digits = false;
+  for (const char c : begin) {
+    if (c >= '0' && c <= '9') {
+      digits = true;
+    } else if (c == '&' && digits) {
+      digits = false;
+      if (++n_fields == 3) return true;
+    } else {
+      return false;
+    }
+  }
+  return false;
+}
+
+/// A binary STL says in its bytes 80 to 83 how many triangles of 50 bytes follow. Text before them
+/// may begin with "solid" all the same, so that only the size tells.
+inline bool is_binary_stl(std::string_view begin, std::uint64_t file_size) {
+  if (begin.size() < 84) return false;
+  std::uint64_t n = 0;
+  for (std::size_t i = 4; i-- > 0;) n = (n << 8) | static_cast<unsigned char>(begin[80 + i]);
+  return file_size == 84 + 50 * n;
+}
+
+inline file_kind kind_of_content(std::string_view begin) {
+  using namespace std::string_view_literals;
+  constexpr std::array<std::pair<std::string_view, file_kind>, 18> magics{{
+      {"ply\n"sv, file_kind::ply},
+      {"ply\r"sv, file_kind::ply},
+      {"\x76\x2f\x31\x01"sv, file_kind::exr},
+      {"\x89PNG\r\n\x1a\n"sv, file_kind::png},
+      {"\xff\xd8\xff"sv, file_kind::jpeg},
+      {"\x93NUMPY"sv, file_kind::npy},
+      {"PK\x03\x04"sv, file_kind::npz},
+      {"PK\x05\x06"sv, file_kind::npz},
+      {"Pf\n"sv, file_kind::pfm},
+      {"Pf\r"sv, file_kind::pfm},
+      {"Pf "sv, file_kind::pfm},
+      {"PF\n"sv, file_kind::pfm},
+      {"glTF"sv, file_kind::glb},
+      {"LASF"sv, file_kind::las},
+      {"ASTM-E57"sv, file_kind::e57},
+      {"# .PCD"sv, file_kind::pcd},
+      {"VERSION "sv, file_kind::pcd},
+      {"solid"sv, file_kind::stl},
+  }};
+  for (const auto& [magic, kind] : magics) {
+    if (begin.starts_with(magic)) return kind;
+  }
+  return is_colmap_map(begin) ? file_kind::colmap_map : file_kind::unknown;
+}
+
+inline file_kind kind_of_extension(std::string_view extension) {
+  constexpr std::array<std::pair<std::string_view, file_kind>, 21> extensions{{
+      {".asc", file_kind::text_points},
+      {".csv", file_kind::text_points},
+      {".dmap", file_kind::dmap},
+      {".e57", file_kind::e57},
+      {".exr", file_kind::exr},
+      {".glb", file_kind::glb},
+      {".gltf", file_kind::gltf},
+      {".las", file_kind::las},
+      {".laz", file_kind::las},
+      {".npy", file_kind::npy},
+      {".npz", file_kind::npz},
+      {".obj", file_kind::obj},
+      {".pcd", file_kind::pcd},
+      {".pfm", file_kind::pfm},
+      {".ply", file_kind::ply},
+      {".png", file_kind::png},
+      {".pts", file_kind::text_points},
+      {".stl", file_kind::stl},
+      {".txt", file_kind::text_points},
+      {".xyz", file_kind::text_points},
+      {".xyzrgb", file_kind::text_points},
+  }};
+  for (const auto& [known, kind] : extensions) {
+    if (known == extension) return kind;
+  }
+  return file_kind::unknown;
+}
+
+}  // namespace detail
+
+/// The format of a file: told from its first bytes, else from its extension.
+/// Throws io_error where the file cannot be read.
+[[nodiscard]] inline file_kind kind_of(const std::filesystem::path& path) {
+  const input_file file(path);
+  const std::string begin = file.begin(128);
+  if (detail::is_binary_stl(begin, file.size())) return file_kind::stl;
+  const file_kind kind = detail::kind_of_content(begin);
+  return kind != file_kind::unknown ? kind : detail::kind_of_extension(extension_of(path));
+}
+
+}  // namespace aib::io
+
 // aib/io/array_depth.hpp
 
 #if defined(AIB_WITH_NPZ)
 #endif
 
 namespace aib::io {
+
+namespace detail {
+
+/// An array's axes as pictures.
+struct frame_shape {
+  std::size_t n = 1, height = 0, width = 0;
+  std::size_t components = 1;  ///< of a pixel
+};
+
+/// The pictures of an array of H x W or N x H x W, with axes of length 1 before or behind; nothing
+/// where it is none. components   what the last axis may be, if it has that length
+inline std::optional<frame_shape> find_frames(std::vector<std::size_t> shape,
+                                              std::size_t components) {
+  frame_shape frames;
+  if (components > 1 && shape.size() > 2 && shape.back() == components) {
+    frames.components = components;
+    shape.pop_back();
+  }
+  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
+  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
+  if (shape.size() < 2 || shape.size() > 3 || element_count(shape).value_or(0) == 0)
+    return std::nullopt;
+  if (shape.size() == 3) frames.n = shape.front();
+  frames.height = shape[shape.size() - 2];
+  frames.width = shape.back();
+  return frames;
+}
+
+}  // namespace detail
 
 /// Depth maps in an array: H x W, or N of them, with axes of length 1 before or behind as the
 /// methods leave them (VGGT: N x H x W x 1, pi3: 1 x N x H x W x 3).
@@ -9598,15 +9910,14 @@ class array_frames {
   /// Throws format_error where the array has not that shape.
   array_frames(array values, const std::filesystem::path& path, std::string_view name);
 
-  [[nodiscard]] std::size_t size() const { return n_; }
+  [[nodiscard]] std::size_t size() const { return shape_.n; }
 
   /// Frame number i < size().
   [[nodiscard]] raster::image<float> frame(std::size_t i) const;
 
  private:
   array values_;
-  std::size_t n_ = 1, height_ = 0, width_ = 0;
-  std::size_t components_ = 1;
+  detail::frame_shape shape_;
 };
 
 /// Reads the depth maps of an NPY or NPZ file.
@@ -9623,31 +9934,26 @@ inline array_frames::array_frames(array values,
                                   const std::filesystem::path& path,
                                   std::string_view name)
     : values_(std::move(values)) {
-  std::vector<std::size_t> shape = values_.shape;
-  if (shape.size() > 2 && shape.back() == 3 && name == "local_points") {
-    components_ = 3;
-    shape.pop_back();
-  }
-  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
-  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
-  if (shape.size() < 2 || shape.size() > 3 || values_.size() == 0) {
+  const auto shape = detail::find_frames(values_.shape, name == "local_points" ? 3 : 1);
+  if (!shape) {
     throw format_error(
         path, message("an array of H x W or N x H x W expected", name.empty() ? "" : " in ", name,
                       ", found ", text_of_shape(values_.shape)));
   }
-  width_ = shape.back();
-  height_ = shape[shape.size() - 2];
-  if (shape.size() == 3) n_ = shape.front();
+  shape_ = *shape;
 }
 
 inline raster::image<float> array_frames::frame(std::size_t i) const {
-  if (i >= n_) {
-    throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
+  const auto& [n, height, width, components] = shape_;
+  if (i >= n) throw argument_error(message("frame ", i + 1, " of ", n, " does not exist"));
+  raster::image<float> image(width, height);
+  const std::size_t first = i * image.size() * components + (components - 1);
+  const auto load = detail::loader(values_.type);
+  const char* from = values_.bytes.data() + first * size_of(values_.type);
+  for (float& value : image) {
+    value = static_cast<float>(load(from));
+    from += components * size_of(values_.type);
   }
-  raster::image<float> image(width_, height_);
-  const std::size_t first = i * image.size() * components_ + (components_ - 1);
-  for (std::size_t k = 0; k < image.size(); ++k)
-    image.data()[k] = static_cast<float>(values_[first + k * components_]);
   return image;
 }
 
@@ -9657,25 +9963,21 @@ namespace detail {
 
 /// The array of an NPZ file that holds depth.
 inline std::string depth_member(const npz_file& file, const std::string& key) {
-  const std::vector<std::string> names = file.names();
-  const auto list = [&] {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-  };
   if (!key.empty()) {
     if (file.contains(key)) return key;
-    throw format_error(file.path(), message("npz: no array \"", key, "\"; there are ", list()));
+    throw format_error(file.path(),
+                       message("npz: no array \"", key, "\"; there are ", file.list()));
   }
   for (const char* usual : {"depth", "depths", "local_points"})
     if (file.contains(usual) && !file.is_unreadable(usual)) return usual;
   std::vector<std::string> pictures;
-  for (const std::string& name : names) {
+  for (const std::string& name : file.names()) {
     if (!file.is_unreadable(name) && file.read_header(name).shape.size() >= 2)
       pictures.push_back(name);
   }
   if (pictures.size() == 1) return pictures.front();
-  throw format_error(file.path(), message("npz: no array is called depth; name one of ", list()));
+  throw format_error(file.path(),
+                     message("npz: no array is called depth; name one of ", file.list()));
 }
 
 }  // namespace detail
@@ -9685,10 +9987,7 @@ inline std::string depth_member(const npz_file& file, const std::string& key) {
 inline array_frames read_array_frames(const std::filesystem::path& path,
                                       const std::string& key,
                                       [[maybe_unused]] const limits& limits) {
-  std::string begin(2, '\0');
-  const input_file file(path);
-  if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
-  if (begin != "PK") return array_frames(read_npy(path), path, key);
+  if (kind_of(path) != file_kind::npz) return array_frames(read_npy(path), path, key);
 #if defined(AIB_WITH_NPZ)
   const npz_file members(path, limits);
   const std::string name = detail::depth_member(members, key);
@@ -9699,32 +9998,6 @@ inline array_frames read_array_frames(const std::filesystem::path& path,
 }
 
 }  // namespace aib::io
-
-// aib/mesh/mesh.hpp
-
-namespace aib::mesh {
-
-using triangle = std::array<std::uint32_t, 3>;
-
-/// Triangles over shared vertices. A vertex lies at `origin + vertices[i]`, as a point of a cloud
-/// does.
-///
-/// `labels` is empty or one a triangle; `label_names[k]` names label k where the source does.
-struct mesh {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> vertices = {};
-  std::vector<triangle> triangles = {};
-  std::vector<std::uint32_t> labels = {};
-  std::vector<std::string> label_names = {};
-  std::vector<std::string> warnings = {};  ///< what the reader removed or doubts, a sentence each
-
-  [[nodiscard]] bool empty() const { return triangles.empty(); }
-  [[nodiscard]] Eigen::Vector3d position(std::size_t vertex) const {
-    return origin + vertices[vertex].cast<double>();
-  }
-};
-
-}  // namespace aib::mesh
 
 // aib/io/axes.hpp
 
@@ -9880,142 +10153,6 @@ class byte_stream {
 
 }  // namespace aib::io
 
-// aib/io/file_kind.hpp
-
-namespace aib::io {
-
-/// Formats of clouds, meshes, depth maps and images that aib knows of; not all of them are read.
-enum class file_kind {
-  unknown,
-  colmap_map,  ///< COLMAP's stereo/depth_maps/*.bin
-  dmap,        ///< OpenMVS depth map
-  e57,
-  exr,
-  glb,
-  gltf,
-  jpeg,
-  las,  ///< LAS or LAZ
-  npy,
-  npz,
-  obj,
-  pcd,
-  pfm,
-  ply,
-  png,
-  stl,
-  text_points,  ///< XYZ, CSV, PTS
-};
-
-/// The extension in lower case, with its dot.
-[[nodiscard]] inline std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
-namespace detail {
-
-/// "480&270&1&": what COLMAP writes before its dense maps.
-inline bool is_colmap_map(std::string_view begin) {
-  std::size_t n_fields = 0;
-  bool digits = false;
-  for (const char c : begin) {
-    if (c >= '0' && c <= '9') {
-      digits = true;
-    } else if (c == '&' && digits) {
-      digits = false;
-      if (++n_fields == 3) return true;
-    } else {
-      return false;
-    }
-  }
-  return false;
-}
-
-/// A binary STL says in its bytes 80 to 83 how many triangles of 50 bytes follow. Text before them
-/// may begin with "solid" all the same, so that only the size tells.
-inline bool is_binary_stl(std::string_view begin, std::uint64_t file_size) {
-  if (begin.size() < 84) return false;
-  std::uint64_t n = 0;
-  for (std::size_t i = 4; i-- > 0;) n = (n << 8) | static_cast<unsigned char>(begin[80 + i]);
-  return file_size == 84 + 50 * n;
-}
-
-inline file_kind kind_of_content(std::string_view begin) {
-  using namespace std::string_view_literals;
-  constexpr std::array<std::pair<std::string_view, file_kind>, 18> magics{{
-      {"ply\n"sv, file_kind::ply},
-      {"ply\r"sv, file_kind::ply},
-      {"\x76\x2f\x31\x01"sv, file_kind::exr},
-      {"\x89PNG\r\n\x1a\n"sv, file_kind::png},
-      {"\xff\xd8\xff"sv, file_kind::jpeg},
-      {"\x93NUMPY"sv, file_kind::npy},
-      {"PK\x03\x04"sv, file_kind::npz},
-      {"PK\x05\x06"sv, file_kind::npz},
-      {"Pf\n"sv, file_kind::pfm},
-      {"Pf\r"sv, file_kind::pfm},
-      {"Pf "sv, file_kind::pfm},
-      {"PF\n"sv, file_kind::pfm},
-      {"glTF"sv, file_kind::glb},
-      {"LASF"sv, file_kind::las},
-      {"ASTM-E57"sv, file_kind::e57},
-      {"# .PCD"sv, file_kind::pcd},
-      {"VERSION "sv, file_kind::pcd},
-      {"solid"sv, file_kind::stl},
-  }};
-  for (const auto& [magic, kind] : magics) {
-    if (begin.starts_with(magic)) return kind;
-  }
-  return is_colmap_map(begin) ? file_kind::colmap_map : file_kind::unknown;
-}
-
-inline file_kind kind_of_extension(std::string_view extension) {
-  constexpr std::array<std::pair<std::string_view, file_kind>, 21> extensions{{
-      {".asc", file_kind::text_points},
-      {".csv", file_kind::text_points},
-      {".dmap", file_kind::dmap},
-      {".e57", file_kind::e57},
-      {".exr", file_kind::exr},
-      {".glb", file_kind::glb},
-      {".gltf", file_kind::gltf},
-      {".las", file_kind::las},
-      {".laz", file_kind::las},
-      {".npy", file_kind::npy},
-      {".npz", file_kind::npz},
-      {".obj", file_kind::obj},
-      {".pcd", file_kind::pcd},
-      {".pfm", file_kind::pfm},
-      {".ply", file_kind::ply},
-      {".png", file_kind::png},
-      {".pts", file_kind::text_points},
-      {".stl", file_kind::stl},
-      {".txt", file_kind::text_points},
-      {".xyz", file_kind::text_points},
-      {".xyzrgb", file_kind::text_points},
-  }};
-  for (const auto& [known, kind] : extensions) {
-    if (known == extension) return kind;
-  }
-  return file_kind::unknown;
-}
-
-}  // namespace detail
-
-/// The format of a file: told from its first bytes, else from its extension.
-/// Throws io_error where the file cannot be read.
-[[nodiscard]] inline file_kind kind_of(const std::filesystem::path& path) {
-  const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 128)), '\0');
-  file.read_at(0, begin.data(), begin.size());
-  if (detail::is_binary_stl(begin, file.size())) return file_kind::stl;
-  const file_kind kind = detail::kind_of_content(begin);
-  return kind != file_kind::unknown ? kind : detail::kind_of_extension(extension_of(path));
-}
-
-}  // namespace aib::io
-
 // aib/io/las.hpp
 
 namespace aib::io {
@@ -10049,8 +10186,7 @@ inline las_header read_las_header(const input_file& file) {
     throw format_error(file.path(), message("las: ", what));
   };
   if (file.size() < smallest) refuse("the file ends within the header");
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 375)), '\0');
-  file.read_at(0, bytes.data(), bytes.size());
+  const std::string bytes = file.begin(375);
   const auto u8 = [&](std::size_t at) { return std::size_t{load<std::uint8_t>(&bytes[at])}; };
   if (!bytes.starts_with("LASF") || u8(24) != 1) refuse("not a LAS file of version 1");
   las_header header;
@@ -10061,8 +10197,11 @@ inline las_header read_las_header(const input_file& file) {
         "`pdal translate in.laz out.las`");
   header.format = u8(104);
   header.record_bytes = load<std::uint16_t>(&bytes[105]);
-  header.n_points = load<std::uint32_t>(&bytes[107]);
-  if (u8(25) >= 4 && bytes.size() >= 255) header.n_points = load<std::uint64_t>(&bytes[247]);
+  const std::uint64_t old_count = load<std::uint32_t>(&bytes[107]);
+  header.n_points =
+      u8(25) >= 4 && bytes.size() >= 255 ? load<std::uint64_t>(&bytes[247]) : old_count;
+  if (old_count != 0 && old_count != header.n_points)
+    refuse(message("one number of points expected, found ", old_count, " and ", header.n_points));
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     header.scale[k] = load<double>(&bytes[131 + 8 * axis]);
@@ -10072,8 +10211,8 @@ inline las_header read_las_header(const input_file& file) {
   if (header.record_bytes < las_record_bytes[header.format])
     refuse(message("records of ", las_record_bytes[header.format], " bytes expected, found ",
                    header.record_bytes));
-  if (!header.scale.allFinite() || !header.offset.allFinite())
-    refuse("scale or offset is not finite");
+  if (!header.scale.allFinite() || !header.offset.allFinite() || !(header.scale.array() != 0).all())
+    refuse("scale or offset is not finite, or a scale is 0");
   if (header.points_at > file.size() ||
       header.n_points > (file.size() - header.points_at) / header.record_bytes)
     refuse(message(header.n_points, " records of ", header.record_bytes, " bytes from byte ",
@@ -10111,41 +10250,8 @@ inline cloud::cloud read_las(const std::filesystem::path& path) {
     result.colors.push_back({static_cast<std::uint8_t>(c[0] / unit),
                              static_cast<std::uint8_t>(c[1] / unit),
                              static_cast<std::uint8_t>(c[2] / unit)});
-  auto floats = to_floats(positions);
-  result.origin = floats.origin;
-  result.points = std::move(floats.points);
-  if (result.empty()) result.warnings.push_back("no points");
+  set_positions(result, to_floats(positions));
   return result;
-}
-
-}  // namespace aib::io
-
-// aib/io/numbers.hpp
-
-namespace aib::io {
-
-/// Takes the next number off the front of a line, in no locale; nothing, and the line as it was,
-/// where the next field is not a number or the line is at its end. Fields are parted by blanks and
-/// the characters of `separators`. "nan" and "inf" are numbers; what is too small for double is 0.
-[[nodiscard]] inline std::optional<double> take_number(std::string_view& line,
-                                                       std::string_view separators = " \t\r\v\f") {
-  const auto is_separator = [&](char c) { return separators.find(c) != std::string_view::npos; };
-  std::size_t at = 0;
-  while (at < line.size() && is_separator(line[at])) ++at;
-  if (at + 1 < line.size() && line[at] == '+' && line[at + 1] != '-') ++at;
-  double value = 0;
-  const char* const last = line.data() + line.size();
-  const auto [end, code] = std::from_chars(line.data() + at, last, value);
-  if (code == std::errc::invalid_argument || (end != last && !is_separator(*end)))
-    return std::nullopt;
-  if (code == std::errc::result_out_of_range) {
-    const std::string_view text(line.data() + at, static_cast<std::size_t>(end - line.data()) - at);
-    if (text.find("e-") == std::string_view::npos && text.find("E-") == std::string_view::npos)
-      return std::nullopt;
-    value = 0;
-  }
-  line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-  return value;
 }
 
 }  // namespace aib::io
@@ -10241,7 +10347,7 @@ class obj_reader {
                           ") expected, found \"", word.substr(0, 40), "\""));
     }
     const std::int64_t vertex = *index > 0 ? *index - 1 : n + *index;
-    if (static_cast<std::size_t>(vertex) > highest_) {
+    if (highest_line_ == 0 || static_cast<std::size_t>(vertex) > highest_) {
       highest_ = static_cast<std::size_t>(vertex);
       highest_line_ = lines_.number();
     }
@@ -10249,15 +10355,10 @@ class obj_reader {
   }
 
   mesh::mesh finish() {
-    auto floats = to_floats(vertices_);
-    result_.origin = floats.origin;
-    result_.vertices = std::move(floats.points);
     if (n_dropped_ > 0)
       result_.warnings.push_back(
           message(n_dropped_, " faces of less than 3 vertices were dropped"));
-    if (result_.triangles.empty()) result_.warnings.push_back("no triangles");
-    if (auto warning = non_finite_warning(result_.vertices, "vertices"))
-      result_.warnings.push_back(std::move(*warning));
+    set_vertices(result_, to_floats(vertices_));
     return std::move(result_);
   }
 
@@ -10287,9 +10388,11 @@ inline mesh::mesh read_obj(const std::filesystem::path& path) {
 namespace aib::io {
 
 /// Reads a PCD file of the Point Cloud Library: ascii, binary and binary_compressed; fields x y z,
-/// normal_x normal_y normal_z, rgb or rgba (packed), label. The viewpoint is not applied.
+/// normal_x normal_y normal_z, rgb or rgba (packed), label; of fields of the same name the first.
+/// The viewpoint is not applied.
 ///
-/// Throws format_error where the file is damaged or has more points than the limits.
+/// Throws format_error where the file is damaged, WIDTH x HEIGHT are not POINTS, or it has more
+/// points than the limits.
 /// Source: Point Cloud Library, "The PCD (Point Cloud Data) file format".
 cloud::cloud read_pcd(const std::filesystem::path& path, const limits& limits = {});
 
@@ -10335,7 +10438,7 @@ class pcd_header_parser {
       if (key == "COUNT") each([](pcd_field& f, std::size_t v) { f.count = v; });
       if (key == "TYPE") parse_types();
       if (key == "WIDTH") width_ = number(1);
-      if (key == "HEIGHT") height_ = number(1);
+      if (key == "HEIGHT") height_ = std::max<std::uint64_t>(1, number(1));
       if (key == "POINTS") points_ = number(1);
       if (key == "VIEWPOINT") parse_viewpoint();
       if (key == "DATA") return finish();
@@ -10344,6 +10447,8 @@ class pcd_header_parser {
   }
 
  private:
+  static constexpr std::uint64_t most = std::uint64_t{1} << 40;
+
   void parse_names() {
     for (std::size_t i = 1; i < words_.size(); ++i)
       header_.fields.push_back({std::string(words_[i])});
@@ -10375,15 +10480,27 @@ class pcd_header_parser {
 
   std::uint64_t number(std::size_t i) const {
     const auto value = i < words_.size() ? io::parse<std::uint64_t>(words_[i]) : std::nullopt;
-    if (!value || *value > std::uint64_t{1} << 40)
+    if (!value || *value > most)
       lines_.fail(message("pcd: a whole number expected behind ", words_[0]));
     return *value;
+  }
+
+  std::uint64_t count() const {
+    if (!width_ && !points_) lines_.fail("pcd: WIDTH or POINTS expected");
+    if (width_.value_or(0) == 0) return points_.value_or(0);
+    if (*width_ > most / height_)
+      lines_.fail(
+          message("pcd: ", *width_, " x ", height_, " points, at most ", most, " expected"));
+    const std::uint64_t n = *width_ * height_;
+    if (points_ && *points_ != n)
+      lines_.fail(message("pcd: POINTS of WIDTH x HEIGHT = ", n, " expected, found ", *points_));
+    return n;
   }
 
   pcd_header finish() {
     if (words_.size() != 2) lines_.fail("pcd: DATA ascii, binary or binary_compressed expected");
     header_.data = words_[1];
-    header_.n = points_ ? *points_ : width_ * height_;
+    header_.n = count();
     std::size_t offset = 0;
     for (pcd_field& f : header_.fields) {
       const bool known = f.bytes == 1 || f.bytes == 2 || f.bytes == 4 || f.bytes == 8;
@@ -10406,8 +10523,8 @@ class pcd_header_parser {
   line_reader lines_;
   std::vector<std::string_view> words_;
   pcd_header header_;
-  std::uint64_t width_ = 0, height_ = 1;
-  std::optional<std::uint64_t> points_;
+  std::optional<std::uint64_t> width_, points_;
+  std::uint64_t height_ = 1;
 };
 
 /// Expands LibLZF; false where the result has not exactly `to.size()` bytes.
@@ -10453,14 +10570,27 @@ inline double pcd_number(const pcd_field& field, const char* at) {
   }
 }
 
-/// Numbers of the wanted fields, point by point.
+/// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
+inline cloud::color pcd_color(const pcd_field& field, double value) {
+  const bool is_whole = value > -2147483649.0 && value < 4294967296.0;
+  const auto bits = field.type == 'F' ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+                    : is_whole        ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value))
+                                      : 0;
+  return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
+          static_cast<std::uint8_t>(bits)};
+}
+
+/// The same from a binary field. As a number, colours that are the bits of a NaN would be changed.
+inline cloud::color pcd_color(const pcd_field& field, const char* at) {
+  if (field.bytes != 4) return pcd_color(field, pcd_number(field, at));
+  return {load<std::uint8_t>(at + 2), load<std::uint8_t>(at + 1), load<std::uint8_t>(at)};
+}
+
+/// The wanted fields, point by point.
 class pcd_points {
  public:
   pcd_points(const pcd_header& header, std::string_view bytes, const std::filesystem::path& path)
-      : header_(header),
-        path_(path),
-        color_(header.find("rgb") ? header.find("rgb") : header.find("rgba")),
-        label_(header.find("label")) {
+      : header_(header), path_(path) {
     if (header.data == "ascii") {
       read_ascii(bytes);
     } else if (header.data == "binary") {
@@ -10473,14 +10603,9 @@ class pcd_points {
   }
 
   cloud::cloud finish() {
-    auto floats = to_floats(positions_);
-    result_.origin = floats.origin;
-    result_.points = std::move(floats.points);
     if (header_.has_viewpoint)
       result_.warnings.push_back("the viewpoint in the header was not applied");
-    if (result_.empty()) result_.warnings.push_back("no points");
-    if (auto warning = non_finite_warning(result_.points, "points"))
-      result_.warnings.push_back(std::move(*warning));
+    set_positions(result_, to_floats(positions_));
     return std::move(result_);
   }
 
@@ -10492,28 +10617,41 @@ class pcd_points {
   void read_ascii(std::string_view text) {
     line_reader lines(text, path_);
     for (std::size_t i = 0; i < header_.lines; ++i) lines.next();
+    std::vector<double> row(header_.fields.size());
     for (std::uint64_t i = 0; i < header_.n; ++i) {
       if (!lines.next_content())
         lines.fail(message("pcd: ", header_.n, " points expected, found ", i));
-      std::string_view rest = lines.line();
-      add([&](const pcd_field& f, std::size_t) {
+      read_line(lines, row);
+      add([&](const pcd_field& f) { return row[index(f)]; },
+          [&](const pcd_field& f) { return pcd_color(f, row[index(f)]); });
+    }
+  }
+
+  [[nodiscard]] std::size_t index(const pcd_field& field) const {
+    return static_cast<std::size_t>(&field - header_.fields.data());
+  }
+
+  /// The first number of each field.
+  void read_line(const line_reader& lines, std::vector<double>& row) const {
+    std::string_view rest = lines.line();
+    for (const pcd_field& f : header_.fields) {
+      for (std::size_t k = 0; k < f.count; ++k) {
         const auto number = take_number(rest);
         if (!number) lines.fail(message("pcd: a number expected for ", f.name));
-        return *number;
-      });
+        if (k == 0) row[index(f)] = *number;
+      }
     }
+    if (!trim(rest).empty())
+      lines.fail(
+          message("pcd: the end of the line expected, found '", trim(rest).substr(0, 40), "'"));
   }
 
   void read_binary(std::string_view bytes, std::size_t row) {
     if (header_.n > bytes.size() / row)
       fail(message(header_.n, " points of ", row, " bytes expected, the file has ", bytes.size(),
                    " bytes for them"));
-    for (std::uint64_t i = 0; i < header_.n; ++i) {
-      const char* at = bytes.data() + i * row;
-      add([&](const pcd_field& f, std::size_t k) {
-        return pcd_number(f, at + f.offset + k * f.bytes);
-      });
-    }
+    for (std::uint64_t i = 0; i < header_.n; ++i)
+      add_binary([&](const pcd_field& f) { return bytes.data() + i * row + f.offset; });
   }
 
   /// Compressed data lie field after field.
@@ -10529,52 +10667,40 @@ class pcd_points {
                    " bytes in ", packed));
     std::vector<char> plain(size);
     if (!expand_lzf(block, plain)) fail("the compressed points are damaged");
-    for (std::uint64_t i = 0; i < header_.n; ++i) {
-      add([&](const pcd_field& f, std::size_t k) {
-        return pcd_number(f, plain.data() + f.offset * header_.n + (i * f.count + k) * f.bytes);
+    for (std::uint64_t i = 0; i < header_.n; ++i)
+      add_binary([&](const pcd_field& f) {
+        return plain.data() + f.offset * header_.n + i * f.count * f.bytes;
       });
-    }
   }
 
-  /// Adds a point whose numbers `get(field, k)` gives in file order.
-  template <class Get>
-  void add(Get get) {
-    Eigen::Vector3d position(0, 0, 0);
-    Eigen::Vector3f normal(0, 0, 0);
-    for (const pcd_field& f : header_.fields) {
-      for (std::size_t k = 0; k < f.count; ++k) {
-        const double value = get(f, k);
-        if (k > 0) continue;
-        if (f.name.size() == 1 && f.name[0] >= 'x' && f.name[0] <= 'z')
-          position[f.name[0] - 'x'] = value;
-        if (f.name.size() == 8 && f.name.starts_with("normal_") && f.name[7] >= 'x' &&
-            f.name[7] <= 'z')
-          normal[f.name[7] - 'x'] = static_cast<float>(value);
-        if (&f == color_) result_.colors.push_back(color(f, value));
-        if (&f == label_) result_.labels.push_back(label_of(value));
-      }
-    }
-    positions_.push_back(position);
-    if (header_.find("normal_x")) result_.normals.push_back(normal);
+  /// Adds a point whose fields lie at `place(field)`.
+  template <class Place>
+  void add_binary(Place place) {
+    add([&](const pcd_field& f) { return pcd_number(f, place(f)); },
+        [&](const pcd_field& f) { return pcd_color(f, place(f)); });
   }
 
-  static std::uint32_t label_of(double value) {
-    return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  /// Adds a point by the first number of a field, and what color it is.
+  template <class Number, class Color>
+  void add(Number number, Color color) {
+    const auto triple = [&](const pcd_triple& f) {
+      return Eigen::Vector3d(number(*f[0]), number(*f[1]), number(*f[2]));
+    };
+    positions_.push_back(triple(position_));
+    if (has_normals_) result_.normals.push_back(triple(normal_).template cast<float>());
+    if (color_) result_.colors.push_back(color(*color_));
+    if (label_) result_.labels.push_back(label_of(number(*label_)));
   }
 
-  /// Red, green, blue in the lower bytes of a number, which may be stored as the bits of a float.
-  static cloud::color color(const pcd_field& field, double value) {
-    const std::uint32_t bits = field.type == 'F'
-                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
-                                   : label_of(value);
-    return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
-            static_cast<std::uint8_t>(bits)};
-  }
+  using pcd_triple = std::array<const pcd_field*, 3>;
 
   const pcd_header& header_;
   std::filesystem::path path_;
-  const pcd_field* color_;
-  const pcd_field* label_;
+  pcd_triple position_{header_.find("x"), header_.find("y"), header_.find("z")};
+  pcd_triple normal_{header_.find("normal_x"), header_.find("normal_y"), header_.find("normal_z")};
+  bool has_normals_ = normal_[0] && normal_[1] && normal_[2];
+  const pcd_field* color_ = header_.find("rgb") ? header_.find("rgb") : header_.find("rgba");
+  const pcd_field* label_ = header_.find("label");
   std::vector<Eigen::Vector3d> positions_;
   cloud::cloud result_;
 };
@@ -10746,15 +10872,10 @@ class ply_header_parser {
   static constexpr std::size_t max_header = std::size_t{1} << 20;
 
   void load_text() {
-    text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file_.size(), 4096)));
-    file_.read_at(0, text_.data(), text_.size());
+    text_ = file_.begin(4096);
     while (text_.find("end_header") == std::string::npos && text_.size() < max_header &&
-           text_.size() < file_.size() && text_.starts_with("ply")) {
-      const std::size_t read = text_.size();
-      text_.resize(static_cast<std::size_t>(
-          std::min<std::uint64_t>({file_.size(), max_header, std::uint64_t{4} * read})));
-      file_.read_at(read, text_.data() + read, text_.size() - read);
-    }
+           text_.size() < file_.size() && text_.starts_with("ply"))
+      text_ = file_.begin(std::min(max_header, 4 * text_.size()));
   }
 
   bool next() {
@@ -10973,7 +11094,8 @@ class ply_ascii_data : public ply_data {
 
   void read_list(const ply_property& p, bool wanted, ply_row& row) {
     const double count = row.values.back();
-    if (!(count >= 0)) throw error(message("ply: list ", p.name, " of ", count, " items"));
+    if (!(count >= 0) || count != std::floor(count))
+      throw error(message("ply: list ", p.name, " of ", count, " items"));
     for (double k = 0; k < count; ++k) {
       const double item = take(p);
       if (wanted) row.list.push_back(item);
@@ -11006,7 +11128,8 @@ namespace aib::io {
 enum class splat_rule { refuse, centres };
 
 /// Reads the vertices of a PLY file: ascii and binary of both byte orders, properties in any order,
-/// lists anywhere, other elements before or behind. Faces are passed over.
+/// lists anywhere, other elements before or behind. Faces are passed over. Of elements or
+/// properties of the same name the first counts.
 ///
 /// x y z       required; other types than binary float are kept as double, from a natural origin
 /// nx ny nz    normals; all zero (as pi3 writes them) means none
@@ -11035,11 +11158,7 @@ template <class T>
 std::uint8_t color_byte(double value) {
   if (std::is_floating_point_v<T>) value *= 255;
   if (std::is_same_v<T, std::uint16_t>) value /= 257;
-  return value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0) + 0.5) : std::uint8_t{0};
-}
-
-inline std::uint32_t label_of(double value) {
-  return value >= 0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+  return channel_of(value + 0.5);
 }
 
 /// The scalar property of a name.
@@ -11654,9 +11773,9 @@ class xyz_table {
   void read_names(std::string_view line) {
     names_.clear();
     std::string name;
-    for (const char c : std::string(line) + ' ') {
+    for (const char c : lower_case(line) + ' ') {
       if (separators.find(c) == std::string_view::npos) {
-        if (c != '"') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        if (c != '"') name += c;
       } else if (!name.empty()) {
         names_.push_back(std::exchange(name, {}));
       }
@@ -11750,7 +11869,7 @@ inline cloud::cloud read_xyz(const std::filesystem::path& path) {
   const detail::xyz_table table(path);
   cloud::cloud result;
   if (table.rows() == 0) {
-    result.warnings.push_back("no points");
+    set_positions(result, {});
     return result;
   }
   const auto columns = detail::find_columns(table, path);
@@ -11762,18 +11881,13 @@ inline cloud::cloud read_xyz(const std::filesystem::path& path) {
     positions[i] = triple(columns.position);
     if (columns.normal) result.normals.push_back(triple(*columns.normal).cast<float>());
     if (columns.color) {
-      const Eigen::Vector3d c = triple(*columns.color).cwiseMax(0).cwiseMin(255);
-      result.colors.push_back({static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]),
-                               static_cast<std::uint8_t>(c[2])});
+      const Eigen::Vector3d c = triple(*columns.color);
+      result.colors.push_back({channel_of(c[0]), channel_of(c[1]), channel_of(c[2])});
     }
   }
-  auto floats = to_floats(positions);
-  result.origin = floats.origin;
-  result.points = std::move(floats.points);
   if (columns.has_unknown)
     result.warnings.push_back("columns that are neither colours nor normals were passed over");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  set_positions(result, to_floats(positions));
   return result;
 }
 
@@ -11789,14 +11903,15 @@ namespace aib::io {
 /// Reads the triangles of a binary glTF 2.0 file (.glb): lists, strips and fans, each node's
 /// transformation applied. A label for each node with a mesh, named as the node. Y is up in glTF.
 ///
-/// Throws format_error where the file is damaged, an index has no vertex, or the file has what is
-/// not read: compressed, quantised or sparse meshes, buffers outside of the file.
-/// Source: Khronos, glTF 2.0 specification.
-mesh::mesh read_glb_mesh(const std::filesystem::path& path);
+/// Throws format_error where the file is damaged, an index has no vertex, nodes repeat meshes
+/// beyond the limits (max_ratio, max_bytes), or the file has what is not read: compressed,
+/// quantised or sparse meshes, buffers outside of the file. Source: Khronos, glTF 2.0
+/// specification.
+mesh::mesh read_glb_mesh(const std::filesystem::path& path, const limits& limits = {});
 
 /// Reads the points of a binary glTF 2.0 file with their colours; of a file without points, the
 /// vertices of its meshes.
-cloud::cloud read_glb_cloud(const std::filesystem::path& path);
+cloud::cloud read_glb_cloud(const std::filesystem::path& path, const limits& limits = {});
 
 namespace detail {
 
@@ -11814,7 +11929,8 @@ class glb_reader {
  public:
   using json = nlohmann::json;
 
-  glb_reader(std::string_view bytes, const std::filesystem::path& path) : path_(path) {
+  glb_reader(std::string_view bytes, const std::filesystem::path& path, const limits& limits)
+      : path_(path), limits_(limits), file_bytes_(bytes.size()) {
     byte_reader in(bytes, path);
     if (in.take(4, "glb: magic") != "glTF") in.fail("glb: not a binary glTF file");
     const auto version = in.read<std::uint32_t>("glb: version");
@@ -11927,9 +12043,22 @@ class glb_reader {
     const auto t = numbers<3>(node, "translation", {0, 0, 0});
     const auto q = numbers<4>(node, "rotation", {0, 0, 0, 1});
     const auto s = numbers<3>(node, "scale", {1, 1, 1});
-    return Eigen::Translation3d(t[0], t[1], t[2]) *
-           Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized() *
+    const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+    if (!(rotation.norm() > 0) || !std::isfinite(rotation.norm()))
+      fail("rotation: a quaternion of length 1 expected");
+    return Eigen::Translation3d(t[0], t[1], t[2]) * rotation.normalized() *
            Eigen::Scaling(s[0], s[1], s[2]);
+  }
+
+  /// Counts what the content takes, which may be far more than the file has: each node repeats its
+  /// mesh.
+  void take_room(std::size_t n, std::size_t bytes) {
+    room_ += static_cast<double>(n) * static_cast<double>(bytes);
+    if (room_ <= static_cast<double>(limits_.max_bytes) ||
+        room_ <= limits_.max_ratio * static_cast<double>(file_bytes_))
+      return;
+    fail(message("the meshes of a file of ", file_bytes_, " bytes need more than ",
+                 limits_.max_bytes, " (max_bytes, max_ratio)"));
   }
 
   void add_mesh(const json& shape, const json& node, const Eigen::Affine3d& world_from_mesh) {
@@ -11939,7 +12068,9 @@ class glb_reader {
       return name != o.end() && name->is_string() ? name->get<std::string>() : std::string();
     };
     content_.label_names.push_back(named(node).empty() ? named(shape) : named(node));
+    take_room(content_.label_names.back().size(), 1);
     for (const json& primitive : list(shape, "primitives")) {
+      take_room(1, 1000);  // time, too, has its limit: a microsecond
       const auto attributes = primitive.find("attributes");
       if (attributes == primitive.end() || !attributes->is_object())
         fail("a primitive without attributes");
@@ -11961,6 +12092,7 @@ class glb_reader {
     const std::size_t first = to.size();
     const accessor source = open(position, 3, true);
     if (source.n > max_vertices - first) fail("more than 2^28 vertices");
+    take_room(source.n, sizeof(Eigen::Vector3d));
     for (std::size_t i = 0; i < source.n; ++i) {
       Eigen::Vector3d p;
       for (int k = 0; k < 3; ++k) p[k] = source.value(i, static_cast<std::size_t>(k));
@@ -11982,13 +12114,14 @@ class glb_reader {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         content_.colors[content_.colors.size() - n + i][k] =
-            static_cast<std::uint8_t>(std::clamp(source.value(i, k) * unit, 0.0, 255.0) + 0.5);
+            channel_of(source.value(i, k) * unit + 0.5);
   }
 
   std::vector<std::uint32_t> indices(const json& primitive, std::size_t n_vertices) const {
     std::vector<std::uint32_t> result;
     if (const auto index = number(primitive, "indices")) {
       const accessor source = open(*index, 1, false);
+      if (source.type == 5126) fail("indices: whole numbers expected, found floats");
       for (std::size_t i = 0; i < source.n; ++i) {
         const double value = source.value(i, 0);
         if (!(value < static_cast<double>(n_vertices)))
@@ -12009,6 +12142,7 @@ class glb_reader {
       return static_cast<std::uint32_t>(first + corners[i]);
     };
     const std::size_t step = mode == strip || mode == fan ? 1 : 3;
+    take_room(corners.size() / step, sizeof(mesh::triangle) + sizeof label);
     for (std::size_t i = 0; i + 2 < corners.size(); i += step) {
       const bool flipped = mode == strip && i % 2 == 1;
       const std::size_t a = mode == fan ? 0 : i;
@@ -12079,42 +12213,37 @@ class glb_reader {
   }
 
   std::filesystem::path path_;
+  const limits& limits_;
+  std::size_t file_bytes_;
+  double room_ = 0;  ///< bytes
   json root_;
   std::string_view buffer_;
   std::vector<bool> visited_;
   glb_content content_;
 };
 
-inline glb_content read_glb(const std::filesystem::path& path) {
+inline glb_content read_glb(const std::filesystem::path& path, const limits& limits) {
   const std::string bytes = read_file(path);
-  return glb_reader(bytes, path).read();
+  return glb_reader(bytes, path, limits).read();
 }
 
 }  // namespace detail
 
-inline mesh::mesh read_glb_mesh(const std::filesystem::path& path) {
-  auto content = detail::read_glb(path);
-  auto floats = to_floats(content.vertices);
-  mesh::mesh result{.origin = floats.origin,
-                    .vertices = std::move(floats.points),
-                    .triangles = std::move(content.triangles),
+inline mesh::mesh read_glb_mesh(const std::filesystem::path& path, const limits& limits) {
+  auto content = detail::read_glb(path, limits);
+  mesh::mesh result{.triangles = std::move(content.triangles),
                     .labels = std::move(content.labels),
                     .label_names = std::move(content.label_names)};
-  if (result.triangles.empty()) result.warnings.push_back("no triangles");
-  if (auto warning = non_finite_warning(result.vertices, "vertices"))
-    result.warnings.push_back(std::move(*warning));
+  set_vertices(result, to_floats(content.vertices));
   return result;
 }
 
-inline cloud::cloud read_glb_cloud(const std::filesystem::path& path) {
-  auto content = detail::read_glb(path);
+inline cloud::cloud read_glb_cloud(const std::filesystem::path& path, const limits& limits) {
+  auto content = detail::read_glb(path, limits);
   const bool has_points = !content.points.empty();
-  auto floats = to_floats(has_points ? content.points : content.vertices);
-  cloud::cloud result{.origin = floats.origin, .points = std::move(floats.points)};
+  cloud::cloud result;
   if (has_points) result.colors = std::move(content.colors);
-  if (result.empty()) result.warnings.push_back("no points");
-  if (auto warning = non_finite_warning(result.points, "points"))
-    result.warnings.push_back(std::move(*warning));
+  set_positions(result, to_floats(has_points ? content.points : content.vertices));
   return result;
 }
 
@@ -12173,7 +12302,7 @@ inline cloud::cloud read_stored_cloud(const std::filesystem::path& path,
 #endif
     case file_kind::glb:
 #if defined(AIB_WITH_JSON)
-      return read_glb_cloud(path);
+      return read_glb_cloud(path, options.limits);
 #else
       throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
 #endif
@@ -12333,6 +12462,11 @@ struct pose_frame {
 
 /// [A | t], the upper rows of a 4 x 4 pose matrix.
 using pose_matrix = Eigen::Matrix<double, 3, 4>;
+
+/// The upper rows of a matrix written by rows, of which the first 12 numbers are used.
+[[nodiscard]] inline pose_matrix matrix_of_rows(std::span<const double> numbers) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+}
 
 /// A written rotation further than this from a rotation (Frobenius norm) is refused.
 inline constexpr double max_rotation_residual = 1e-2;
@@ -12912,9 +13046,9 @@ enum class colmap_content {
 /// there, their poses win over those in images, as in COLMAP. Quaternions are normalised. Without
 /// points3D the points are empty, and a warning says so.
 ///
-/// Throws io_error where there is no model, format_error where a file is cut off, has bytes after
-/// its last record, an unknown camera model, an image without its camera or a pose that is not
-/// finite.
+/// Throws io_error where there is no model or half of one, format_error where a file is cut off,
+/// has bytes after its last record, an unknown camera model, an image without its camera or a pose
+/// that is not finite.
 [[nodiscard]] std::vector<colmap_model> read_colmap_models(
     const std::filesystem::path& path, colmap_content content = colmap_content::everything);
 
@@ -12930,11 +13064,6 @@ namespace colmap::detail {
 
 namespace fs = std::filesystem;
 
-inline bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
   if (is_there(folder / "cameras.bin") && is_there(folder / "images.bin"))
     return colmap_encoding::binary;
@@ -12943,13 +13072,30 @@ inline std::optional<colmap_encoding> find_encoding(const fs::path& folder) {
   return std::nullopt;
 }
 
+/// Throws io_error where only one of the two files is there without which there is no model.
+inline void refuse_half_model(const fs::path& folder) {
+  for (const std::string extension : {".bin", ".txt"}) {
+    for (const auto& [here, away] :
+         {std::pair("cameras", "images"), std::pair("images", "cameras")}) {
+      if (is_there(folder / (here + extension)))
+        throw io_error(folder / (away + extension),
+                       message("colmap: not there, though ", here, extension, " is"));
+    }
+  }
+}
+
 /// Sub-folders with a number for a name that are models, in the order of the numbers.
 inline std::vector<fs::path> numbered_models(const fs::path& folder) {
   std::vector<std::pair<std::uint64_t, fs::path>> found;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const auto number = parse<std::uint64_t>(entry.path().filename().string());
-    if (number && find_encoding(entry.path())) found.emplace_back(*number, entry.path());
+    if (!number) continue;
+    if (!find_encoding(entry.path())) {
+      refuse_half_model(entry.path());
+      continue;
+    }
+    found.emplace_back(*number, entry.path());
   }
   std::sort(found.begin(), found.end());
   std::vector<fs::path> folders;
@@ -13121,7 +13267,7 @@ inline std::vector<colmap_model> read_colmap_models(const std::filesystem::path&
   }
   if (models.empty()) {
     throw io_error(path,
-                   colmap::detail::is_there(path)
+                   is_there(path)
                        ? "colmap: cameras and images (.bin or .txt) expected here, in numbered "
                          "folders or in sparse, found none"
                        : "no such folder");
@@ -13197,8 +13343,7 @@ namespace aib::io {
 /// Source: COLMAP, mvs/mat.h.
 inline depth::depth_map read_colmap_depth(const std::filesystem::path& path) {
   const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(64);
   std::array<std::size_t, 3> size{};
   std::size_t at = 0;
   for (std::size_t& n : size) {
@@ -13231,6 +13376,15 @@ struct posed_images {
   pose::trajectory trajectory = {};
   std::vector<math::camera> cameras = {};  ///< one a pose, or none where the file has none
 };
+
+/// Where the intrinsics of some images only are known there are none; a warning says so.
+inline void drop_some_cameras(posed_images& images) {
+  if (images.cameras.size() == images.trajectory.size()) return;
+  images.trajectory.warnings.push_back(message("intrinsics are known for ", images.cameras.size(),
+                                               " of ", images.trajectory.size(),
+                                               " images: none are given"));
+  images.cameras.clear();
+}
 
 }  // namespace aib::io
 
@@ -13522,11 +13676,6 @@ void write_kitti(const std::filesystem::path& path, const pose::trajectory& t);
 
 namespace detail {
 
-/// The upper rows of a matrix written by rows; 12 numbers are used.
-inline pose_matrix matrix_of_rows(const std::vector<double>& numbers) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
-}
-
 inline pose::trajectory read_pose_rows(const std::filesystem::path& path,
                                        std::string_view format,
                                        std::size_t n,
@@ -13692,9 +13841,7 @@ namespace detail {
 /// The four words of the header; one blank parts the last from the pixels.
 class pfm_header {
  public:
-  explicit pfm_header(const input_file& file) : path_(file.path()) {
-    text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 256)));
-    file.read_at(0, text_.data(), text_.size());
+  explicit pfm_header(const input_file& file) : path_(file.path()), text_(file.begin(256)) {
     const std::string_view tag = word("the tag Pf");
     if (tag == "PF") fail("a gray map (Pf) expected, found colours (PF)");
     if (tag != "Pf") fail("the tag Pf expected at the begin");
@@ -13888,6 +14035,10 @@ exr_header read_exr_header(const input_file& file, const limits& limits = {});
   return names[static_cast<std::size_t>(compression)];
 }
 
+/// What no codec that aib reads expands beyond: deflate makes 1032 bytes of one, and PXR24 four of
+/// three.
+inline constexpr std::uint64_t exr_best_ratio = 1376;
+
 /// Scan lines in a block.
 [[nodiscard]] constexpr std::size_t block_lines(exr_compression compression) {
   constexpr std::array<std::size_t, 10> lines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
@@ -13956,24 +14107,24 @@ class exr_header_parser {
     byte_reader in(value, file_.path());
     const auto is = [&](std::string_view n, std::string_view t) { return name == n && type == t; };
     if (is("channels", "chlist")) {
+      once(seen_.channels, name);
       parse_channels(part, in);
-      seen_.channels = true;
     } else if (is("compression", "compression")) {
+      once(seen_.compression, name);
       const auto code = in.read<std::uint8_t>("exr: compression");
       if (code > static_cast<std::uint8_t>(exr_compression::dwab))
         fail(message("exr: unknown compression ", unsigned{code}));
       part.compression = static_cast<exr_compression>(code);
-      seen_.compression = true;
     } else if (is("dataWindow", "box2i")) {
+      once(seen_.data, name);
       part.data = parse_window(in);
-      seen_.data = true;
     } else if (is("displayWindow", "box2i")) {
+      once(seen_.display, name);
       part.display = parse_window(in);
-      seen_.display = true;
     } else if (is("tiles", "tiledesc")) {
+      once(seen_.tiles, name);
       part.tile_width = in.read<std::uint32_t>("exr: tiles");
       part.tile_height = in.read<std::uint32_t>("exr: tiles");
-      seen_.tiles = true;
     } else if (is("name", "string")) {
       part.name = value;
     } else if (is("type", "string")) {
@@ -13984,11 +14135,15 @@ class exr_header_parser {
     }
   }
 
+  void once(bool& seen, std::string_view name) const {
+    if (std::exchange(seen, true)) fail(message("exr: the attribute ", name, " comes twice"));
+  }
+
   void parse_channels(exr_part& part, byte_reader& in) {
     for (;;) {
       exr_channel_info channel;
       channel.name = in.read_name("exr: name of a channel");
-      if (channel.name.empty()) return;
+      if (channel.name.empty()) return check_names(part);
       const auto type = in.read<std::int32_t>("exr: type of a channel");
       if (type < 0 || type > 2) fail(message("exr: channel ", channel.name, ": type ", type));
       channel.type = static_cast<exr_pixel>(type);
@@ -14002,6 +14157,14 @@ class exr_header_parser {
       part.channels.push_back(std::move(channel));
       if (part.channels.size() > 1024) fail("exr: more than 1024 channels");
     }
+  }
+
+  void check_names(const exr_part& part) const {
+    std::vector<std::string_view> names;
+    for (const exr_channel_info& channel : part.channels) names.push_back(channel.name);
+    std::sort(names.begin(), names.end());
+    const auto twice = std::adjacent_find(names.begin(), names.end());
+    if (twice != names.end()) fail(message("exr: channel ", *twice, " comes twice"));
   }
 
   exr_window parse_window(byte_reader& in) {
@@ -14028,6 +14191,10 @@ class exr_header_parser {
     if (is_tiled_ && (!seen_.tiles || part.tile_width == 0 || part.tile_height == 0 ||
                       part.tile_width > limits_.max_pixels / part.tile_height))
       fail("exr: no size of the tiles in the header");
+    const std::uint64_t bytes = part.data.width() * part.data.height() * part.pixel_bytes();
+    if (part.compression <= exr_compression::pxr24 && bytes / exr_best_ratio > file_.size())
+      fail(message("exr: ", part.data.width(), "x", part.data.height(), " pixels of ",
+                   part.pixel_bytes(), " bytes in a file of ", file_.size(), " bytes"));
     n_blocks_.push_back(block_count(part));
   }
 
@@ -14547,7 +14714,9 @@ class exr_block_decoder {
     raw_ = reinterpret_cast<const std::uint8_t*>(block.data());
     // A block that the codec could not make smaller is stored as it is.
     if (block.size() == shape.bytes) return true;
-    if (block.size() > shape.bytes || compression == exr_compression::none) return false;
+    if (block.size() > shape.bytes || compression == exr_compression::none ||
+        shape.bytes / exr_best_ratio > block.size())
+      return false;
     raw_ = nullptr;
     bytes_.resize(shape.bytes);
     switch (compression) {
@@ -14629,7 +14798,8 @@ raster::image<float> read_exr_channel(const input_file& file,
 
 namespace detail {
 
-/// Bytes of a file at any place; neighbours are read together.
+/// Bytes of a file at any place. Who goes on reading gets more and more ahead; who jumps about, as
+/// tiles in any order do, gets what is asked for.
 class file_window {
  public:
   explicit file_window(const input_file& file) : file_(file) {}
@@ -14641,7 +14811,9 @@ class file_window {
                          message(what, ": ", n, " bytes expected, the file has ", file_.size()));
     }
     if (offset < begin_ || offset + n > begin_ + bytes_.size()) {
-      const std::uint64_t wanted = std::max<std::uint64_t>(n, std::uint64_t{1} << 18);
+      const bool goes_on = offset >= begin_ && offset <= begin_ + bytes_.size();
+      ahead_ = goes_on ? std::min(2 * ahead_, most_ahead) : least_ahead;
+      const std::uint64_t wanted = std::max<std::uint64_t>(n, ahead_);
       bytes_.resize(static_cast<std::size_t>(std::min(wanted, file_.size() - offset)));
       file_.read_at(offset, bytes_.data(), bytes_.size());
       begin_ = offset;
@@ -14650,9 +14822,12 @@ class file_window {
   }
 
  private:
+  static constexpr std::uint64_t least_ahead = 1 << 12, most_ahead = 1 << 18;
+
   const input_file& file_;
   std::vector<char> bytes_;
   std::uint64_t begin_ = 0;
+  std::uint64_t ahead_ = least_ahead;
 };
 
 /// Reads one channel block by block.
@@ -14704,10 +14879,11 @@ class exr_channel_reader {
   static constexpr std::size_t max_block_bytes = std::size_t{1} << 29;
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-  /// row_of_[y]: where line y goes; none where it is not wanted.
+  /// Where line y goes; none where it is not wanted.
+  std::size_t row_of(std::size_t y) const { return row_of_.empty() ? y : row_of_[y]; }
+
   void place_rows(std::span<const std::size_t> lines) {
-    row_of_.assign(part_.data.height(), none);
-    for (std::size_t i = 0; i < row_of_.size() && lines.empty(); ++i) row_of_[i] = i;
+    if (!lines.empty()) row_of_.assign(part_.data.height(), none);
     for (std::size_t i = lines.size(); i-- > 0;) {
       if (lines[i] >= row_of_.size()) throw argument_error("read_exr_channel: no such line");
       row_of_[lines[i]] = i;
@@ -14722,6 +14898,7 @@ class exr_channel_reader {
   }
 
   bool is_wanted(std::size_t first, std::size_t n) const {
+    if (row_of_.empty()) return true;
     return std::any_of(row_of_.begin() + static_cast<std::ptrdiff_t>(first),
                        row_of_.begin() + static_cast<std::ptrdiff_t>(first + n),
                        [](std::size_t row) { return row != none; });
@@ -14784,7 +14961,7 @@ class exr_channel_reader {
     const std::size_t pixel = type_ == exr_pixel::half ? 2 : 4;
     row_bytes_.resize(shape.width * pixel);
     for (std::size_t y = 0; y < shape.height; ++y) {
-      const std::size_t row = row_of_[first + y];
+      const std::size_t row = row_of(first + y);
       if (row == none) continue;
       const std::size_t begin = y * line_bytes + channel_offset_ * shape.width;
       float* const pixels = &to(x, row);
@@ -14825,7 +15002,7 @@ class exr_channel_reader {
   std::size_t channel_offset_ = 0;  ///< bytes of the channels before, a pixel
   std::size_t block_width_ = 0, block_height_ = 0;
   std::vector<char> offsets_;
-  std::vector<std::size_t> row_of_;
+  std::vector<std::size_t> row_of_;  ///< by line; empty: all of them stay where they are
   std::vector<std::uint8_t> row_bytes_;
   exr_block_decoder decoder_;
 };
@@ -15327,9 +15504,10 @@ inline png_header read_png_header(const std::filesystem::path& path, const limit
   return detail::png_decoder(path, limits).header();
 }
 
-inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
-                                                  const limits& limits) {
-  detail::png_decoder decoder(path, limits);
+namespace detail {
+
+/// The stored numbers of an opened file, see read_png_gray.
+inline raster::image<std::uint16_t> decode_gray(png_decoder& decoder) {
   const png_header header = decoder.header();
   if (!(header.is_gray || header.has_palette) || header.has_alpha)
     decoder.fail("gray pixels without transparency expected, found colours or transparency");
@@ -15340,7 +15518,15 @@ inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& p
   }
   std::vector<std::uint8_t> packed(decoder.decoded_size(SPNG_FMT_PNG));
   decoder.decode(SPNG_FMT_PNG, packed.data(), packed.size());
-  return detail::unpack_samples(packed, header);
+  return unpack_samples(packed, header);
+}
+
+}  // namespace detail
+
+inline raster::image<std::uint16_t> read_png_gray(const std::filesystem::path& path,
+                                                  const limits& limits) {
+  detail::png_decoder decoder(path, limits);
+  return detail::decode_gray(decoder);
 }
 
 inline raster::color_image read_png_color(const std::filesystem::path& path, const limits& limits) {
@@ -15479,12 +15665,13 @@ inline depth::depth_map read_exr_depth(const std::filesystem::path& path,
 inline depth::depth_map read_png_depth(const std::filesystem::path& path,
                                        const depth_options& options) {
 #if defined(AIB_WITH_PNG)
-  const png_header header = read_png_header(path, options.limits);
+  png_decoder decoder(path, options.limits);
+  const png_header header = decoder.header();
   if (header.bits != 16 || !header.is_gray)
     throw format_error(path,
                        "png: gray depth of 16 bits expected; 8 bits or colours are a picture "
                        "of depth, not depth");
-  const auto stored = read_png_gray(path, options.limits);
+  const auto stored = decode_gray(decoder);
   depth::depth_map result{raster::image<float>(stored.width(), stored.height())};
   std::copy(stored.begin(), stored.end(), result.values.begin());
   if (options.scale == 0)
@@ -16021,10 +16208,10 @@ class frame_stack {
   /// x W (x 1, x 3 for the names of point maps) or is in Fortran order.
   explicit frame_stack(const std::filesystem::path& path, const std::string& key = {});
 
-  [[nodiscard]] std::size_t size() const { return n_; }
-  [[nodiscard]] std::size_t height() const { return height_; }
-  [[nodiscard]] std::size_t width() const { return width_; }
-  [[nodiscard]] bool is_point_map() const { return components_ == 3; }
+  [[nodiscard]] std::size_t size() const { return shape_.n; }
+  [[nodiscard]] std::size_t height() const { return shape_.height; }
+  [[nodiscard]] std::size_t width() const { return shape_.width; }
+  [[nodiscard]] bool is_point_map() const { return shape_.components == 3; }
 
   /// Frame i as it is stored. Throws argument_error where there is none.
   [[nodiscard]] array at(std::size_t i);
@@ -16056,7 +16243,7 @@ class frame_stack {
   std::unique_ptr<source> source_;
   dtype type_ = dtype::f4;
   bool reversed_ = false;
-  std::size_t n_ = 1, height_ = 0, width_ = 0, components_ = 1;
+  detail::frame_shape shape_;
 };
 
 namespace detail {
@@ -16166,21 +16353,14 @@ inline void frame_stack::open_npz(const std::filesystem::path& path, const std::
 
 inline void frame_stack::open_npy(const std::filesystem::path& path) {
   const input_file file(path);
-  constexpr std::uint64_t enough = 1 << 16;
-  std::string begin(static_cast<std::size_t>(std::min(file.size(), enough)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = file.begin(1 << 16);
   const detail::npy_header header = detail::read_npy_header(begin, file.size(), path);
   set_shape(header, path, path.stem().string());
   source_ = std::make_unique<plain_source>(path, header.begin);
 }
 
 inline frame_stack::frame_stack(const std::filesystem::path& path, const std::string& key) {
-  std::string begin(2, '\0');
-  {
-    const input_file file(path);
-    if (file.size() >= begin.size()) file.read_at(0, begin.data(), begin.size());
-  }
-  if (begin == "PK")
+  if (kind_of(path) == file_kind::npz)
     open_npz(path, key);
   else
     open_npy(path);
@@ -16189,31 +16369,23 @@ inline frame_stack::frame_stack(const std::filesystem::path& path, const std::st
 inline void frame_stack::set_shape(const detail::npy_header& header,
                                    const std::filesystem::path& path,
                                    std::string_view name) {
-  std::vector<std::size_t> shape = header.shape;
-  if (shape.size() > 2 && shape.back() == 3 && detail::is_point_map_name(name)) {
-    components_ = 3;
-    shape.pop_back();
-  }
-  if (shape.size() > 2 && shape.back() == 1) shape.pop_back();
-  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
-  if (shape.size() < 2 || shape.size() > 3 || header.fortran ||
-      detail::element_count(shape).value_or(0) == 0) {
+  const auto shape = detail::find_frames(header.shape, detail::is_point_map_name(name) ? 3 : 1);
+  if (!shape || header.fortran) {
     throw format_error(
         path, message("an array of N x H x W in C order expected in ", name, ", found ",
                       text_of_shape(header.shape), header.fortran ? " in Fortran order" : ""));
   }
   type_ = header.type;
   reversed_ = header.order != std::endian::native;
-  width_ = shape.back();
-  height_ = shape[shape.size() - 2];
-  if (shape.size() == 3) n_ = shape.front();
+  shape_ = *shape;
 }
 
 inline array frame_stack::at(std::size_t i) {
-  if (i >= n_) throw argument_error(message("frame ", i + 1, " of ", n_, " does not exist"));
-  array frame{type_, {height_, width_}, {}};
-  if (components_ > 1) frame.shape.push_back(components_);
-  frame.bytes.resize(height_ * width_ * components_ * size_of(type_));
+  const auto& [n, height, width, components] = shape_;
+  if (i >= n) throw argument_error(message("frame ", i + 1, " of ", n, " does not exist"));
+  array frame{type_, {height, width}, {}};
+  if (components > 1) frame.shape.push_back(components);
+  frame.bytes.resize(height * width * components * size_of(type_));
   source_->read(std::uint64_t{i} * frame.bytes.size(), frame.bytes);
   if (reversed_) detail::reverse_elements(frame.bytes, size_of(type_));
   return frame;
@@ -16221,9 +16393,9 @@ inline array frame_stack::at(std::size_t i) {
 
 inline raster::image<float> frame_stack::frame(std::size_t i) {
   const std::vector<float> values = at(i).values<float>();
-  raster::image<float> image(width_, height_);
+  raster::image<float> image(width(), height());
   for (std::size_t k = 0; k < image.size(); ++k)
-    image.data()[k] = values[k * components_ + components_ - 1];
+    image.data()[k] = values[k * shape_.components + shape_.components - 1];
   return image;
 }
 
@@ -16242,7 +16414,7 @@ mesh::mesh read_stl(const std::filesystem::path& path);
 
 namespace detail {
 
-/// Numbers equal corners alike: vertices in the order of their first use.
+/// Numbers equal corners alike: vertices in the order of their first use. At most 2^32 corners.
 inline mesh::mesh weld(const std::vector<Eigen::Vector3f>& corners) {
   std::vector<std::uint32_t> order(corners.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -16261,17 +16433,19 @@ inline mesh::mesh weld(const std::vector<Eigen::Vector3f>& corners) {
     first[order[i]] = same ? first[order[i - 1]] : order[i];
   }
   mesh::mesh result;
+  float_positions vertices;
   std::vector<std::uint32_t> number(corners.size());
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     if (first[i] == i) {
-      number[i] = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.push_back(corners[i]);
+      number[i] = static_cast<std::uint32_t>(vertices.points.size());
+      vertices.points.push_back(corners[i]);
     } else {
       number[i] = number[first[i]];
     }
   }
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
     result.triangles.push_back({number[i], number[i + 1], number[i + 2]});
+  set_vertices(result, std::move(vertices));
   return result;
 }
 
@@ -16298,8 +16472,7 @@ inline std::vector<Eigen::Vector3f> read_ascii_stl(const std::filesystem::path& 
   bool in_facet = false;
   while (lines.next_content()) {
     std::string_view rest = trim(lines.line());
-    std::string word(rest.substr(0, rest.find_first_of(" \t")));
-    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string word = lower_case(rest.substr(0, rest.find_first_of(" \t")));
     rest.remove_prefix(word.size());
     if (word == "vertex") {
       Eigen::Vector3f corner;
@@ -16326,16 +16499,15 @@ inline std::vector<Eigen::Vector3f> read_ascii_stl(const std::filesystem::path& 
 
 inline mesh::mesh read_stl(const std::filesystem::path& path) {
   const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 84)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  constexpr std::uint64_t most = (std::uint64_t{1} << 32) / 3;  // corners have numbers of 32 bits
+  if (file.size() / 50 > most)
+    throw format_error(
+        path, message("stl: at most ", most, " triangles of 50 bytes expected, found ", file.size(),
+                      " bytes"));
+  const std::string begin = file.begin(84);
   const bool is_ascii = !detail::is_binary_stl(begin, file.size()) &&
                         (begin.starts_with("solid") || begin.starts_with("SOLID"));
-  mesh::mesh result =
-      detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));
-  if (result.triangles.empty()) result.warnings.push_back("no triangles");
-  if (auto warning = non_finite_warning(result.vertices, "vertices"))
-    result.warnings.push_back(std::move(*warning));
-  return result;
+  return detail::weld(is_ascii ? detail::read_ascii_stl(path) : detail::read_binary_stl(file));
 }
 
 }  // namespace aib::io
@@ -16360,7 +16532,8 @@ mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& opti
 
 namespace detail {
 
-inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
+inline mesh::mesh read_stored_mesh(const std::filesystem::path& path,
+                                   [[maybe_unused]] const limits& limits) {
   switch (kind_of(path)) {
     case file_kind::ply:
       return read_ply_mesh(path);
@@ -16370,7 +16543,7 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
       return read_stl(path);
     case file_kind::glb:
 #if defined(AIB_WITH_JSON)
-      return read_glb_mesh(path);
+      return read_glb_mesh(path, limits);
 #else
       throw format_error(path, "this build of aib reads no GLB; build it with nlohmann-json");
 #endif
@@ -16384,7 +16557,7 @@ inline mesh::mesh read_stored_mesh(const std::filesystem::path& path) {
 }  // namespace detail
 
 inline mesh::mesh read_mesh(const std::filesystem::path& path, const mesh_options& options) {
-  mesh::mesh result = detail::read_stored_mesh(path);
+  mesh::mesh result = detail::read_stored_mesh(path, options.limits);
   demand_points(path, "vertices", result.vertices.size(), options.limits);
   demand_points(path, "triangles", result.triangles.size(), options.limits);
   turn_z_up(result, options.up);
@@ -16528,11 +16701,10 @@ inline pose::trajectory poses_of_array(const array& matrices,
     throw format_error(path, message("poses: shape (N, 4, 4) or (N, 3, 4) expected, found ",
                                      text_of_shape(matrices.shape)));
   }
-  using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
   const std::vector<double> numbers = matrices.values<double>();
   pose::trajectory t;
   for (std::size_t i = 0; i < shape[0]; ++i) {
-    const pose_matrix m = Eigen::Map<const rows>(numbers.data() + i * shape[1] * 4);
+    const pose_matrix m = matrix_of_rows(std::span(numbers).subspan(i * shape[1] * 4));
     try {
       t.world_from_camera.push_back(pose_from_matrix(m, frame));
     } catch (const argument_error& e) {
@@ -16710,7 +16882,7 @@ inline std::optional<pose_format> format_of_extension(const std::filesystem::pat
        {".npz", pose_format::npz},
        {".xml", pose_format::metashape}}};
   for (const auto& [extension, format] : extensions) {
-    if (path.extension() == extension) return format;
+    if (extension_of(path) == extension) return format;
   }
   return std::nullopt;
 }
@@ -16725,10 +16897,7 @@ inline pose_format detect_pose_format(const std::filesystem::path& path) {
                        "reconstruction.json or NPZ files expected in the folder, found none");
   }
   if (detail::is_colmap_file(path)) return pose_format::colmap;
-  constexpr std::size_t enough = 1 << 16;
-  const input_file file(path);
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), enough)), '\0');
-  file.read_at(0, begin.data(), begin.size());
+  const std::string begin = input_file(path).begin(1 << 16);
   if (const auto format = detail::format_of_content(begin, path)) return *format;
   if (const auto format = detail::format_of_extension(path)) return *format;
   std::string names;
@@ -16768,15 +16937,19 @@ class csv_table {
     if (header.starts_with('#')) header.remove_prefix(1);
     std::vector<std::string_view> names;
     split(header, names, ',');
-    for (std::size_t i = 0; i < names.size(); ++i) columns_[std::string(names[i])] = i;
+    n_columns_ = names.size();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!columns_.emplace(names[i], i).second && !names[i].empty())
+        lines_.fail(message("reality_capture: column '", names[i], "' comes twice"));
+    }
   }
 
   bool next() {
     if (!lines_.next_content()) return false;
     split(lines_.line(), fields_, ',');
-    if (fields_.size() != columns_.size()) {
-      lines_.fail(message("reality_capture: ", columns_.size(), " columns expected, found ",
-                          fields_.size()));
+    if (fields_.size() != n_columns_) {
+      lines_.fail(
+          message("reality_capture: ", n_columns_, " columns expected, found ", fields_.size()));
     }
     return true;
   }
@@ -16795,6 +16968,7 @@ class csv_table {
 
  private:
   line_reader lines_;
+  std::size_t n_columns_ = 0;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string_view> fields_;
 };
@@ -16872,7 +17046,7 @@ namespace aib::io {
       lines.expect(4, "row of a 4 x 4 matrix");
       rows.insert(rows.end(), lines.numbers().begin(), lines.numbers().end());
     }
-    const pose_matrix matrix = detail::matrix_of_rows(rows);
+    const pose_matrix matrix = matrix_of_rows(rows);
     const bool identity = matrix == pose_matrix::Identity();
     t.world_from_camera.push_back(lost && identity ? unregistered_pose() : lines.checked([&] {
       return pose_from_matrix(matrix, frame);
@@ -17136,10 +17310,7 @@ inline posed_images opensfm_component(const json_node& component,
     if (camera->second) images.cameras.push_back(*camera->second);
   });
   images.trajectory = checked_trajectory(std::move(images.trajectory), path, "opensfm");
-  if (images.cameras.size() != images.trajectory.size()) {
-    images.trajectory.warnings.push_back("a projection is not known: no intrinsics are given");
-    images.cameras.clear();
-  }
+  drop_some_cameras(images);
   return images;
 }
 
@@ -17346,12 +17517,7 @@ inline posed_images read_transforms(const std::filesystem::path& path,
       images.cameras.push_back(std::move(*camera));
   }
   images.trajectory = checked_trajectory(std::move(images.trajectory), path, "transforms");
-  if (images.cameras.size() != images.trajectory.size()) {
-    images.trajectory.warnings.push_back(message("intrinsics are known for ", images.cameras.size(),
-                                                 " of ", images.trajectory.size(),
-                                                 " frames: none are given"));
-    images.cameras.clear();
-  }
+  drop_some_cameras(images);
   return images;
 }
 
@@ -17435,11 +17601,9 @@ inline pose_key find_pose_key(const npz_file& file, const pose_npz_options& opti
     if (options.key.empty() ? file.contains(known.name) : options.key == known.name) return known;
   }
   if (options.key.empty()) {
-    std::string names;
-    for (const std::string& name : file.names()) names += message(names.empty() ? "" : ", ", name);
     throw argument_error(
         message(file.path().string(),
-                ": npz: no array of poses known by its name; give one as key: ", names));
+                ": npz: no array of poses known by its name; give one as key: ", file.list()));
   }
   if (!options.convention) {
     throw argument_error(message(file.path().string(), ": npz: '", options.key,
@@ -17606,10 +17770,9 @@ class metashape_reader {
     const pugi::xml_node transform = camera.child("transform");
     if (!transform) return unregistered_pose();
     const std::vector<double> n = numbers(transform, 16);
-    using rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
     const std::string component = camera.attribute("component_id").value();
     try {
-      const math::rigid3 pose = pose_from_matrix(Eigen::Map<const rows>(n.data()));
+      const math::rigid3 pose = pose_from_matrix(matrix_of_rows(n));
       const auto world = worlds_.contains(component) ? worlds_.find(component) : worlds_.find("");
       components_.insert(component);
       if (world != worlds_.end()) return world->second * pose;
@@ -17684,10 +17847,7 @@ class metashape_reader {
                                  " components, which need not fit each other"));
     }
     if (left_out_) warnings.push_back("b2, k4 or p of a fisheye are left out of the intrinsics");
-    if (images.cameras.size() == images.trajectory.size()) return;
-    warnings.push_back(message("intrinsics are known for ", images.cameras.size(), " of ",
-                               images.trajectory.size(), " cameras: none are given"));
-    images.cameras.clear();
+    drop_some_cameras(images);
   }
 
   static double number(std::string_view text) {
@@ -17769,8 +17929,8 @@ struct trajectory_options {
 /// npy, npz           N x 4 x 4 or N x 3 x 4                     as told, opencv
 /// npz                a folder of them, one an image (CUT3R)     as told, opencv
 ///
-/// Throws io_error, format_error as the readers do; argument_error where an option does not fit the
-/// format or the number of names is not that of the poses.
+/// Throws io_error, format_error as the readers do, format_error too where there are more or fewer
+/// poses than names; argument_error where an option does not fit the format.
 [[nodiscard]] posed_images read_posed_images(const std::filesystem::path& path,
                                              const trajectory_options& options = {});
 
@@ -17917,8 +18077,8 @@ inline posed_images read_posed_images(const std::filesystem::path& path,
   posed_images images = detail::pose_reader(path, format, options).read();
   if (options.names.empty()) return images;
   if (options.names.size() != images.trajectory.size()) {
-    throw argument_error(message(path.string(), ": ", options.names.size(), " names for ",
-                                 images.trajectory.size(), " poses"));
+    throw format_error(
+        path, message(options.names.size(), " names for ", images.trajectory.size(), " poses"));
   }
   images.trajectory.names = options.names;
   return images;
@@ -17972,7 +18132,7 @@ void write_trajectory(const std::filesystem::path& path,
 namespace detail {
 
 inline pose_format format_to_write(const std::filesystem::path& path) {
-  const auto extension = path.extension();
+  const std::string extension = extension_of(path);
   if (extension == ".json") return pose_format::transforms;
   if (extension == ".npy") return pose_format::npy;
   if (extension == ".kitti") return pose_format::kitti;
@@ -18440,6 +18600,26 @@ struct surface_point {
   int k = 0;  ///< which edge or corner
 };
 
+/// The point of a triangle's edges that is nearest to p.
+[[nodiscard]] inline surface_point nearest_on_edges(const Eigen::Vector3d& p,
+                                                    const std::array<Eigen::Vector3d, 3>& t) {
+  surface_point best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const Eigen::Vector3d along = t[next] - t[k];
+    const double length = along.squaredNorm();
+    const double share = length > 0 ? std::clamp(along.dot(p - t[k]) / length, 0.0, 1.0) : 0;
+    const Eigen::Vector3d q = t[k] + share * along;
+    if (!((q - p).squaredNorm() < least)) continue;
+    least = (q - p).squaredNorm();
+    best = share == 0   ? surface_point{t[k], triangle_part::corner, k}
+           : share == 1 ? surface_point{t[next], triangle_part::corner, next}
+                        : surface_point{q, triangle_part::edge, k};
+  }
+  return best;
+}
+
 /// The point of a triangle that is nearest to p. A triangle without area is treated as its edges.
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
 [[nodiscard]] inline surface_point nearest_on_triangle(const Eigen::Vector3d& p,
@@ -18453,18 +18633,21 @@ struct surface_point {
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d6 >= 0 && d5 <= d6) return {t[2], triangle_part::corner, 2};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
     return {t[0] + d1 / (d1 - d3) * ab, triangle_part::edge, 0};
   }
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0) {
     return {t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]), triangle_part::edge, 1};
   }
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
     return {t[0] + d2 / (d2 - d6) * ac, triangle_part::edge, 2};
   }
   const double sum = va + vb + vc;
+  // Of a triangle without area, or of a sliver far away, the three are what rounding left.
+  const double rounded = std::abs(d1 * d4) + std::abs(d3 * d6) + std::abs(d5 * d2);
+  if (!(sum > 1e-12 * rounded)) return nearest_on_edges(p, t);
   return {t[0] + vb / sum * ab + vc / sum * ac, triangle_part::face, 0};
 }
 
@@ -18582,7 +18765,7 @@ inline nearest_triangle triangle_tree::nearest(const Eigen::Vector3f& p,
 
 namespace aib::mesh {
 
-/// The triangles of a mesh whose corners are all finite.
+/// The triangles of a mesh whose corners are all finite (cloud::is_finite).
 struct finite_triangles {
   std::vector<search::corners> corners = {};
   std::vector<std::uint32_t> index = {};  ///< of each in the mesh
@@ -18596,7 +18779,7 @@ struct finite_triangles {
       const Eigen::Vector3f& at_a = surface.vertices[a];
       const Eigen::Vector3f& at_b = surface.vertices[b];
       const Eigen::Vector3f& at_c = surface.vertices[c];
-      if (!at_a.allFinite() || !at_b.allFinite() || !at_c.allFinite()) continue;
+      if (!cloud::is_finite(at_a) || !cloud::is_finite(at_b) || !cloud::is_finite(at_c)) continue;
       corners.emplace_back(at_a, at_b, at_c);
       index.push_back(static_cast<std::uint32_t>(t));
     }
@@ -18908,6 +19091,15 @@ namespace aib::mesh {
   double total = 0;
   for (std::size_t t = 0; t < m.triangles.size(); ++t) total += area(m, t);
   return total;
+}
+
+/// A point of a triangle, uniform by area for two numbers uniform in [0, 1].
+/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
+[[nodiscard]] inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner,
+                                              double u,
+                                              double v) {
+  const double root = std::sqrt(u);
+  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
 }
 
 }  // namespace aib::mesh
@@ -21744,6 +21936,7 @@ namespace detail {
 }
 
 inline std::vector<frame_pair> pairs_by_frames(std::size_t n, const delta_options& options) {
+  if (!(options.delta < static_cast<double>(n))) return {};
   const auto delta = static_cast<std::size_t>(options.delta);
   const std::size_t step = options.all_pairs ? 1 : delta;
   std::vector<frame_pair> out;
@@ -21877,7 +22070,8 @@ inline double focal_at_size(const math::camera& c, std::uint64_t width, std::uin
 /// Mean of |f - f_ref| / f_ref over views. The estimate's focal lengths are rescaled to the
 /// reference's image size (sizes of 0 are unknown: taken for equal), fx and fy averaged.
 ///
-/// Throws undefined_error if there is no view, argument_error where a model has no focal length.
+/// Throws undefined_error if there is no view, argument_error where a model has no focal length,
+/// one is not finite or that of a reference not positive.
 inline focal_error_result focal_error(std::span<const camera_pair> views,
                                       focal_over over = focal_over::views) {
   focal_error_result out{0, 0, {}};
@@ -21893,6 +22087,10 @@ inline focal_error_result focal_error(std::span<const camera_pair> views,
     const math::camera& ref = view.reference;
     const double f_ref = (ref.fx() + ref.fy()) / 2;
     const double f = focal_at_size(view.estimate, ref.width, ref.height);
+    if (!std::isfinite(f) || !(f_ref > 0 && std::isfinite(f_ref))) {
+      throw argument_error(message("focal_error: finite focal lengths, of a reference > 0, ",
+                                   "expected, found ", f, " against ", f_ref));
+    }
     out.each.push_back(std::abs(f - f_ref) / f_ref);
     out.mre += out.each.back();
   }
@@ -21926,7 +22124,8 @@ struct reprojection_difference_result {
 inline reprojection_difference_result reprojection_difference(const math::camera& estimate,
                                                               const math::camera& reference,
                                                               std::size_t cells = 32) {
-  if (estimate.width * estimate.height * reference.width * reference.height * cells == 0)
+  if (std::min({estimate.width, estimate.height, reference.width, reference.height}) == 0 ||
+      cells == 0)
     throw argument_error("reprojection_difference: image sizes and a grid expected");
   const auto width = static_cast<double>(reference.width);
   const auto height = static_cast<double>(reference.height);
@@ -22327,8 +22526,8 @@ struct sub_trajectory_errors {
 /// than two sub-trajectories are left out.
 ///
 /// Invariant to a translation and a turn about z of either side. Frames without a finite pose are
-/// passed over. Throws argument_error if the trajectories are not associated, undefined_error if no
-/// length has two.
+/// passed over. Throws argument_error if the trajectories are not associated or a length is not
+/// positive, undefined_error if no length has two.
 /// Source: Zhang and Scaramuzza, IROS 2018, Sec. IV; rpg_trajectory_evaluation,
 /// compute_trajectory_errors.py.
 inline std::vector<sub_trajectory_errors> sub_trajectories(
@@ -22338,11 +22537,13 @@ inline std::vector<sub_trajectory_errors> sub_trajectories(
   const registered_frames frames = registered("sub_trajectories", estimate, reference);
   const std::vector<double> path = path_lengths(frames.reference);
   std::vector<double> lengths = options.lengths;
-  if (lengths.empty() && !path.empty()) {
+  if (lengths.empty() && !path.empty() && path.back() > 0) {
     for (int k = 1; k <= 5; ++k) lengths.push_back(path.back() * k / 10);
   }
   std::vector<sub_trajectory_errors> out;
   for (const double length : lengths) {
+    if (!(length > 0))
+      throw argument_error(message("sub_trajectories: lengths > 0 expected, found ", length));
     std::vector<double> translation, percent, rotation, per_m, yaw, gravity;
     for (const frame_pair& pair : detail::nearest_along_path(path, length, options.tolerance)) {
       const auto motion = [&](const std::vector<math::rigid3>& poses) {
@@ -22396,6 +22597,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
                                            const worst_pairs_options& options = {}) {
   const registered_frames frames = registered("worst_pairs", estimate, reference);
   const frame_pairs pairs(frames.estimate, frames.reference);
+  const std::size_t n_wanted = std::min(options.n, pairs.frames() * pairs.frames());
   struct found {
     double error;
     std::size_t i, j;
@@ -22405,7 +22607,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
     }
   };
   const auto keep_worst = [&](std::vector<found>& list) {
-    const std::size_t n = std::min(options.n, list.size());
+    const std::size_t n = std::min(n_wanted, list.size());
     std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(n), list.end());
     list.resize(n);
   };
@@ -22419,7 +22621,7 @@ inline std::vector<worst_pair> worst_pairs(const trajectory& estimate,
             const double error = translation > rotation ? translation : rotation;  // NaN: rotation
             if (!(error > least)) return;
             list.push_back({error, i, j});
-            if (list.size() < 2 * options.n + 100) return;
+            if (list.size() < 2 * n_wanted + 100) return;
             keep_worst(list);
             least = list.empty() ? least : list.back().error;
           };
@@ -23374,13 +23576,6 @@ inline double uniform(std::uint64_t seed, std::uint64_t counter) {
   return static_cast<double>(random_bits(seed, counter) >> 11) * 0x1p-53;
 }
 
-/// A point of a triangle for two uniform numbers.
-/// Source: Osada et al., "Shape distributions", ACM TOG 2002, equation 1.
-inline Eigen::Vector3d point_in(const std::array<Eigen::Vector3d, 3>& corner, double u, double v) {
-  const double root = std::sqrt(u);
-  return (1 - root) * corner[0] + root * (1 - v) * corner[1] + root * v * corner[2];
-}
-
 inline Eigen::Vector3f unit_normal(const std::array<Eigen::Vector3d, 3>& corner) {
   const Eigen::Vector3d ab = corner[1] - corner[0];
   const Eigen::Vector3d ac = corner[2] - corner[0];
@@ -23398,10 +23593,6 @@ inline cloud::cloud room_for(const aib::mesh::mesh& surface, std::size_t n) {
   return points;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Points at random, uniform by area.
 inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_options& options) {
   const double area = aib::mesh::area(surface);
@@ -23413,22 +23604,22 @@ inline mesh_samples uniform_samples(const aib::mesh::mesh& surface, const mesh_o
   const double offset = uniform(options.seed, 0);
   const auto starts = sample_starts(surface, area, n, offset);
   cloud::cloud points = room_for(surface, n);
-  for_each_chunk(surface.triangles.size(), 64, options.threads, options.control,
-                 [&](const chunk& c) {
-                   for (std::size_t t = c.begin; t < c.end; ++t) {
-                     if (starts[t] == starts[t + 1]) continue;
-                     demand_go(options.control);  // a triangle may have a million
-                     const auto corner = aib::mesh::corners(surface, t);
-                     const Eigen::Vector3f normal = unit_normal(corner);
-                     for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
-                       const Eigen::Vector3d p = point_in(corner, uniform(options.seed, 2 * i + 1),
+  for_each_chunk(
+      surface.triangles.size(), 64, options.threads, options.control, [&](const chunk& c) {
+        for (std::size_t t = c.begin; t < c.end; ++t) {
+          if (starts[t] == starts[t + 1]) continue;
+          demand_go(options.control);  // a triangle may have a million
+          const auto corner = aib::mesh::corners(surface, t);
+          const Eigen::Vector3f normal = unit_normal(corner);
+          for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) {
+            const Eigen::Vector3d p = aib::mesh::point_in(corner, uniform(options.seed, 2 * i + 1),
                                                           uniform(options.seed, 2 * i + 2));
-                       points.points[i] = p.cast<float>();
-                       points.normals[i] = normal;
-                       if (!points.labels.empty()) points.labels[i] = surface.labels[t];
-                     }
-                   }
-                 });
+            points.points[i] = p.cast<float>();
+            points.normals[i] = normal;
+            if (!points.labels.empty()) points.labels[i] = surface.labels[t];
+          }
+        }
+      });
   const double density = static_cast<double>(n) / area;
   return {std::move(points), area, density, sampling_floor(density)};
 }
@@ -23643,7 +23834,7 @@ inline unprojected unproject(const depth::depth_map& map,
   detail::check(map, world_from_camera, options);
   const Eigen::Vector3d& centre = world_from_camera.translation;
   unprojected nothing{};
-  nothing.points.origin = cloud::natural_origin(centre, centre);
+  nothing.points.origin = cloud::natural_origin(centre);
   if (map.values.empty()) return nothing;
   const detail::unprojector rows(map, camera, world_from_camera, options);
   const std::size_t n_rows = (map.values.height() + options.stride - 1) / options.stride;
@@ -23686,7 +23877,7 @@ namespace aib::sample {
   if (options.confidence.data) threshold = detail::confidence_threshold(z, options);
   const Eigen::Vector3d& centre = world_from_camera.translation;
   unprojected made{};
-  made.points.origin = cloud::natural_origin(centre, centre);
+  made.points.origin = cloud::natural_origin(centre);
   for (std::size_t y = 0; y < height; y += options.stride) {
     demand_go(options.control);
     for (std::size_t x = 0; x < width; x += options.stride) {
@@ -24412,39 +24603,19 @@ struct cloud_file {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-namespace detail {
-
-/// Calls `visit(index, position)` for each point of a file.
-template <class Visit>
-void for_each_position(const std::filesystem::path& path, const control& control, Visit&& visit) {
-  io::ply_positions positions(path);
-  std::vector<Eigen::Vector3d> block;
-  std::uint64_t index = 0;
-  while (positions.next(block)) {
-    demand_go(control);
-    for (const Eigen::Vector3d& p : block) visit(index++, p);
-  }
-}
-
-}  // namespace detail
-
 /// Looks through a file for its origin, as io::read_ply_cloud finds it.
 [[nodiscard]] inline cloud_file open_cloud(const std::filesystem::path& path,
                                            const control& control = {}) {
-  cloud_file file{.path = path};
-  {
-    const io::ply_positions positions(path);
-    file.size = positions.size();
-    if (positions.is_float()) return file;
+  io::ply_positions positions(path);
+  cloud_file file{.path = path, .size = positions.size()};
+  if (positions.is_float()) return file;
+  cloud::origin_finder origin(file.size);
+  std::vector<Eigen::Vector3d> block;
+  while (positions.next(block)) {
+    demand_go(control);
+    for (const Eigen::Vector3d& p : block) origin.add(p);
   }
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d high = -low;
-  detail::for_each_position(path, control, [&](std::uint64_t, const Eigen::Vector3d& p) {
-    if (!p.allFinite()) return;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  });
-  if (low[0] <= high[0]) file.origin = cloud::natural_origin(low, high);
+  file.origin = origin.result();
   return file;
 }
 
@@ -24457,20 +24628,27 @@ void for_each_point(const cloud_file& file,
                     const control& control,
                     Visit&& visit) {
   const Eigen::Vector3d shift = file.origin - origin;
-  for_each_position(file.path, control, [&](std::uint64_t i, const Eigen::Vector3d& position) {
-    const Eigen::Vector3d local = position - file.origin;
-    const Eigen::Vector3f stored = local.cast<float>();
-    const Eigen::Vector3d moved = shift + stored.cast<double>();
-    const Eigen::Vector3f p = moved.cast<float>();
-    visit(i, point{p.x(), p.y(), p.z()});
-  });
+  io::ply_positions positions(file.path);
+  std::vector<Eigen::Vector3d> block;
+  std::vector<Eigen::Vector3f> stored;
+  std::uint64_t index = 0;
+  while (positions.next(block)) {
+    demand_go(control);
+    // In two loops: of a float that is not stored between its two conversions, x +
+    // double(float(y)), GCC 12 leaves out the rounding from -O2 on.
+    stored.clear();
+    for (const Eigen::Vector3d& p : block) stored.emplace_back((p - file.origin).cast<float>());
+    for (const Eigen::Vector3f& s : stored) {
+      const Eigen::Vector3d moved = shift + s.cast<double>();
+      const Eigen::Vector3f p = moved.cast<float>();
+      visit(index++, point{p.x(), p.y(), p.z()});
+    }
+  }
 }
 
 }  // namespace detail
 
-[[nodiscard]] inline bool is_finite(const point& p) {
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
+[[nodiscard]] inline bool is_finite(const point& p) { return cloud::is_finite({p[0], p[1], p[2]}); }
 
 /// A box in float, empty until something is added.
 struct float_box {
@@ -25057,6 +25235,45 @@ inline rendered_frames render_frames(const mesh::ray_surface& surface,
 
 }  // namespace AIB_ISA
 }  // namespace aib::stream
+
+// aib/survey/clearance.hpp
+
+namespace aib::survey::detail {
+
+/// Keeps away from a mesh.
+class clearance {
+ public:
+  clearance(const mesh::surface_index& surface, double least) : surface_(surface), least_(least) {}
+
+  struct nearest {
+    Eigen::Vector3d point;
+    double distance;
+  };
+  [[nodiscard]] nearest nearest_to(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d in_tree = p - surface_.origin();
+    const Eigen::Vector3f coarse = in_tree.cast<float>();
+    const auto found = surface_.tree().nearest(coarse, 0);
+    const auto on = search::nearest_on_triangle(in_tree, surface_.tree().triangle(found.place));
+    return {on.position + surface_.origin(), (on.position - in_tree).norm()};
+  }
+
+  /// The place nearby that is far enough from everything; nothing where there is none.
+  [[nodiscard]] std::optional<Eigen::Vector3d> pushed(Eigen::Vector3d p) const {
+    for (int round = 0; round < 30; ++round) {
+      const nearest near = nearest_to(p);
+      if (near.distance >= least_) return p;
+      if (!(near.distance > 1e-9)) return std::nullopt;
+      p += (1.02 * least_ - near.distance) / near.distance * (p - near.point);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const mesh::surface_index& surface_;
+  double least_;
+};
+
+}  // namespace aib::survey::detail
 
 // aib/survey/lens.hpp
 
@@ -25732,6 +25949,73 @@ namespace aib::survey {
 
 }  // namespace aib::survey
 
+// aib/survey/frame_scale.hpp
+
+namespace aib::survey::detail {
+
+/// A path measured in frames: how many frame widths, or heights, the image of a wall moves.
+class frame_scale {
+ public:
+  explicit frame_scale(const flight_path& path) : path_(path) {
+    const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
+    double sum = 0;
+    for (std::size_t l = 0; l < path.legs.size(); ++l) {
+      for (std::size_t i = 0; i < n_parts; ++i) {
+        parts_.push_back({l, static_cast<double>(i) / n_parts, sum});
+        sum += moved(path.legs[l], i, frame);
+      }
+    }
+    total_ = sum;
+  }
+
+  [[nodiscard]] double total() const { return total_; }
+
+  /// The pose where the image has moved as far.
+  [[nodiscard]] math::rigid3 at(double frames) const {
+    const auto behind = std::upper_bound(parts_.begin() + 1, parts_.end(), frames,
+                                         [](double f, const part& p) { return f < p.begin; });
+    const part& p = *(behind - 1);
+    const double end = behind == parts_.end() ? total_ : behind->begin;
+    const double share = end > p.begin ? (frames - p.begin) / (end - p.begin) : 0;
+    return path_.legs[p.leg].at(p.share + std::clamp(share, 0.0, 1.0) / n_parts);
+  }
+
+ private:
+  static constexpr std::size_t n_parts = 16;
+  struct part {
+    std::size_t leg;
+    double share;
+    double begin;
+  };
+
+  double moved(const leg& l, std::size_t i, const wall_frame& frame) const {
+    const auto share = [](double k) { return k / n_parts; };
+    const auto k = static_cast<double>(i);
+    const Eigen::Matrix3d camera_from_world = l.at(share(k + 0.5)).rotation.transpose();
+    const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
+    const double straight = way.norm();
+    // A chord is shorter than its arc.
+    const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
+    const Eigen::Vector3d by = arc * (camera_from_world * way);
+    // What a turn moves out of an image leaves at its edge, where it moves fastest.
+    const double far = path_.stand_off;
+    const double at_side = far + std::pow(frame.width / 2, 2) / far;
+    const double at_top = far + std::pow(frame.height / 2, 2) / far;
+    const Eigen::Vector3d turn = camera_from_world * l.turn / n_parts;
+    // A turn into the way moves the image more. One against it, as round a corner, less; but then
+    // another side comes into sight: the way counts.
+    const double right = std::abs(by.x()) + std::abs(by.z()), down = std::abs(by.y());
+    return std::max(right, std::abs(by.x() + at_side * turn.y())) / frame.width +
+           std::max(down, std::abs(by.y() - at_top * turn.x())) / frame.height;
+  }
+
+  const flight_path& path_;
+  std::vector<part> parts_;
+  double total_ = 0;
+};
+
+}  // namespace aib::survey::detail
+
 // aib/survey/fly.hpp
 
 namespace aib::survey {
@@ -25796,100 +26080,6 @@ struct flight_plan {
 
 namespace detail {
 
-/// A path measured in frames: how many frame widths, or heights, the image of a wall moves.
-class frame_scale {
- public:
-  explicit frame_scale(const flight_path& path) : path_(path) {
-    const wall_frame frame = frame_on_wall(path.camera, path.stand_off);
-    double sum = 0;
-    for (std::size_t l = 0; l < path.legs.size(); ++l) {
-      for (std::size_t i = 0; i < n_parts; ++i) {
-        parts_.push_back({l, static_cast<double>(i) / n_parts, sum});
-        sum += moved(path.legs[l], i, frame);
-      }
-    }
-    total_ = sum;
-  }
-
-  [[nodiscard]] double total() const { return total_; }
-
-  /// The pose where the image has moved as far.
-  [[nodiscard]] math::rigid3 at(double frames) const {
-    const auto behind = std::upper_bound(parts_.begin() + 1, parts_.end(), frames,
-                                         [](double f, const part& p) { return f < p.begin; });
-    const part& p = *(behind - 1);
-    const double end = behind == parts_.end() ? total_ : behind->begin;
-    const double share = end > p.begin ? (frames - p.begin) / (end - p.begin) : 0;
-    return path_.legs[p.leg].at(p.share + std::clamp(share, 0.0, 1.0) / n_parts);
-  }
-
- private:
-  static constexpr std::size_t n_parts = 16;
-  struct part {
-    std::size_t leg;
-    double share;
-    double begin;
-  };
-
-  double moved(const leg& l, std::size_t i, const wall_frame& frame) const {
-    const auto share = [](double k) { return k / n_parts; };
-    const auto k = static_cast<double>(i);
-    const Eigen::Matrix3d camera_from_world = l.at(share(k + 0.5)).rotation.transpose();
-    const Eigen::Vector3d way = l.at(share(k + 1)).translation - l.at(share(k)).translation;
-    const double straight = way.norm();
-    // A chord is shorter than its arc.
-    const double arc = straight > 0 ? l.length() / n_parts / straight : 0;
-    const Eigen::Vector3d by = arc * (camera_from_world * way);
-    // What a turn moves out of an image leaves at its edge, where it moves fastest.
-    const double far = path_.stand_off;
-    const double at_side = far + std::pow(frame.width / 2, 2) / far;
-    const double at_top = far + std::pow(frame.height / 2, 2) / far;
-    const Eigen::Vector3d turn = camera_from_world * l.turn / n_parts;
-    // A turn into the way moves the image more. One against it, as round a corner, less; but then
-    // another side comes into sight: the way counts.
-    const double right = std::abs(by.x()) + std::abs(by.z()), down = std::abs(by.y());
-    return std::max(right, std::abs(by.x() + at_side * turn.y())) / frame.width +
-           std::max(down, std::abs(by.y() - at_top * turn.x())) / frame.height;
-  }
-
-  const flight_path& path_;
-  std::vector<part> parts_;
-  double total_ = 0;
-};
-
-/// Keeps away from a mesh.
-class clearance {
- public:
-  clearance(const mesh::surface_index& surface, double least) : surface_(surface), least_(least) {}
-
-  struct nearest {
-    Eigen::Vector3d point;
-    double distance;
-  };
-  [[nodiscard]] nearest nearest_to(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d in_tree = p - surface_.origin();
-    const Eigen::Vector3f coarse = in_tree.cast<float>();
-    const auto found = surface_.tree().nearest(coarse, 0);
-    const auto on = search::nearest_on_triangle(in_tree, surface_.tree().triangle(found.place));
-    return {on.position + surface_.origin(), (on.position - in_tree).norm()};
-  }
-
-  /// The place nearby that is far enough from everything; nothing where there is none.
-  [[nodiscard]] std::optional<Eigen::Vector3d> pushed(Eigen::Vector3d p) const {
-    for (int round = 0; round < 30; ++round) {
-      const nearest near = nearest_to(p);
-      if (near.distance >= least_) return p;
-      if (!(near.distance > 1e-9)) return std::nullopt;
-      p += (1.02 * least_ - near.distance) / near.distance * (p - near.point);
-    }
-    return std::nullopt;
-  }
-
- private:
-  const mesh::surface_index& surface_;
-  double least_;
-};
-
 /// `to`, or on the way to it as far as an angle from `from`.
 inline Eigen::Matrix3d turned_at_most(const Eigen::Matrix3d& from,
                                       const Eigen::Matrix3d& to,
@@ -25926,8 +26116,8 @@ inline void place_frames(flight_plan& plan, const flight_path& path, const fly_o
   }
 }
 
-inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
-  const clearance keep(space.distance, options.min_distance);
+/// Moves the poses that are too near to the mesh.
+inline void push_away(flight_plan& plan, const fly_options& options, const clearance& keep) {
   auto& poses = plan.trajectory.world_from_camera;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Eigen::Vector3d& at = poses[i].translation;
@@ -25944,13 +26134,16 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
     plan.largest_push = std::max(plan.largest_push, (*there - at).norm());
     at = *there;
   }
+}
+
+/// How near frames and the ways between them come to the mesh.
+inline void measure_distance(flight_plan& plan, double tolerated, const clearance& keep) {
+  const auto& poses = plan.trajectory.world_from_camera;
   plan.min_distance = HUGE_VAL;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d from = poses[i].translation;
-    const Eigen::Vector3d way = i + 1 < poses.size()
-                                    ? Eigen::Vector3d(poses[i + 1].translation - from)
-                                    : Eigen::Vector3d::Zero();
-    const double n = std::clamp(std::ceil(2 * way.norm() / options.min_distance), 1.0, 1000.0);
+    const Eigen::Vector3d way = poses[std::min(i + 1, poses.size() - 1)].translation - from;
+    const double n = std::clamp(std::ceil(2 * way.norm() / tolerated), 1.0, 1000.0);
     for (double k = 0; k < n; ++k) {
       const double distance = keep.nearest_to(from + k / n * way).distance;
       if (distance >= *plan.min_distance) continue;
@@ -25958,6 +26151,12 @@ inline void keep_away(flight_plan& plan, const fly_options& options, const fligh
       plan.min_distance_frame = i;
     }
   }
+}
+
+inline void keep_away(flight_plan& plan, const fly_options& options, const flight_space& space) {
+  const clearance keep(space.distance, options.min_distance);
+  push_away(plan, options, keep);
+  measure_distance(plan, options.min_distance, keep);
   if (options.clearance == clearance_rule::refuse && *plan.min_distance < options.min_distance) {
     throw undefined_error(message("survey::fly: the way from ",
                                   plan.trajectory.names[plan.min_distance_frame],
@@ -26204,13 +26403,16 @@ inline double flight_report::seen_within(double incidence) const {
 
 namespace detail {
 
+struct covered_area {
+  std::vector<seen_sample> samples;
+  double area;
+};
+
 /// Points at random, evenly by area, on the faces with some labels.
-inline std::vector<seen_sample> samples_of(const mesh::mesh& m,
-                                           const measure_options& options,
-                                           double& area) {
+inline covered_area samples_of(const mesh::mesh& m, const measure_options& options) {
   const bool labelled = m.labels.size() == m.triangles.size();
   std::vector<double> until;  // area up to and with each face
-  area = 0;
+  double area = 0;
   for (std::size_t t = 0; t < m.triangles.size(); ++t) {
     const std::uint32_t label = labelled ? m.labels[t] : 0;
     const bool counts = options.labels.empty() || (labelled && is_among(label, options.labels));
@@ -26219,25 +26421,27 @@ inline std::vector<seen_sample> samples_of(const mesh::mesh& m,
   if (!(area > 0))
     throw undefined_error("survey::measure: no faces with these labels that have an area");
   random_engine random(options.seed);
-  std::vector<seen_sample> samples;
+  covered_area covered{{}, area};
   for (std::size_t i = 0; i < options.samples; ++i) {
     const auto face = std::upper_bound(until.begin(), until.end(), random.uniform() * area);
-    const auto t = static_cast<std::size_t>(face - until.begin());
-    const auto [a, b, c] = mesh::corners(m, t);
-    const double root = std::sqrt(random.uniform()), along = random.uniform();
-    const Eigen::Vector3d ab = b - a, ac = c - a;
-    samples.push_back(
-        {m.origin + a + root * ((1 - along) * ab + along * ac), ab.cross(ac).normalized()});
+    const auto corner = mesh::corners(m, static_cast<std::size_t>(face - until.begin()));
+    const double u = random.uniform(), v = random.uniform();
+    const Eigen::Vector3d ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+    covered.samples.push_back({m.origin + mesh::point_in(corner, u, v), ab.cross(ac).normalized()});
   }
-  return samples;
+  return covered;
 }
 
+struct seen_points {
+  std::vector<Eigen::Vector3d> position;
+  std::vector<float> gsd;  ///< none where the camera has no focal length
+};
+
 /// Points in the middle of the cells of a grid over an image, where they lie on the surface.
-inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
-                                              const mesh::ray_surface& surface,
-                                              const measure_options& options,
-                                              std::vector<float>& gsd) {
-  std::vector<Eigen::Vector3d> points;
+inline seen_points points_of(const math::view& v,
+                             const mesh::ray_surface& surface,
+                             const measure_options& options) {
+  seen_points points;
   const auto part = [](std::size_t i, std::size_t n, std::uint64_t pixels) {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(n) * static_cast<double>(pixels);
   };
@@ -26250,9 +26454,9 @@ inline std::vector<Eigen::Vector3d> points_of(const math::view& v,
       const Eigen::Vector3d& from = v.world_from_camera.translation;
       const auto hit = surface.first_hit(from, direction, options.max_distance);
       if (!hit || !is_among(surface.label_at(hit->place), options.labels)) continue;
-      points.push_back(from + hit->distance * direction);
+      points.position.push_back(from + hit->distance * direction);
       if (v.camera.has_focal())
-        gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
+        points.gsd.push_back(static_cast<float>(hit->distance * ray->z() / v.camera.fx()));
     }
   }
   return points;
@@ -26280,6 +26484,60 @@ inline bool sees(const math::view& v,
          surface.sees(from, p, options.tolerance * distance);
 }
 
+struct frames_report {
+  std::vector<double> overlap;
+  std::vector<float> gsd;
+  std::vector<double> off_normal;
+};
+
+inline frames_report measure_frames(std::span<const math::view> views,
+                                    const mesh::ray_surface& surface,
+                                    const measure_options& options) {
+  std::vector<std::vector<float>> gsd(views.size());
+  std::vector<double> overlap(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> off(views.size());
+  for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      off[i] = off_normal(views[i], surface, options);
+      seen_points points = points_of(views[i], surface, options);
+      gsd[i] = std::move(points.gsd);
+      if (i + 1 == views.size() || points.position.empty()) continue;
+      const auto seen = std::count_if(
+          points.position.begin(), points.position.end(),
+          [&](const Eigen::Vector3d& p) { return sees(views[i + 1], p, surface, options); });
+      overlap[i] = static_cast<double>(seen) / static_cast<double>(points.position.size());
+    }
+  });
+  frames_report report{std::move(overlap), {}, std::move(off)};
+  for (const std::vector<float>& of_view : gsd)
+    report.gsd.insert(report.gsd.end(), of_view.begin(), of_view.end());
+  return report;
+}
+
+/// The samples with what the views see of them.
+inline std::vector<seen_sample> seen_from(std::span<const math::view> views,
+                                          std::vector<seen_sample> samples,
+                                          const mesh::ray_surface& surface,
+                                          const measure_options& options) {
+  const std::vector<math::view_cone> cones(views.begin(), views.end());
+  for_each_chunk(samples.size(), 64, options.threads, options.control, [&](const chunk& c) {
+    for (std::size_t i = c.begin; i < c.end; ++i) {
+      seen_sample& s = samples[i];
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!cones[k].may_contain(s.position)) continue;
+        const Eigen::Vector3d way = views[k].world_from_camera.translation - s.position;
+        const double incidence =
+            std::atan2(way.cross(s.normal).norm(), std::abs(way.dot(s.normal)));
+        if (incidence > options.max_incidence) continue;
+        if (!sees(views[k], s.position, surface, options)) continue;
+        ++s.n_views;
+        s.incidence = std::min(s.incidence, incidence);
+      }
+    }
+  });
+  return samples;
+}
+
 }  // namespace detail
 
 inline namespace AIB_ISA {
@@ -26300,44 +26558,14 @@ inline namespace AIB_ISA {
   if (views.empty()) throw undefined_error("survey::measure: no view");
   if (options.samples == 0 || options.columns == 0 || options.rows == 0)
     throw argument_error("survey::measure: a sample and a ray or more expected");
-  flight_report report;
-  report.n_rays = views.size() * options.columns * options.rows;
-  report.samples = detail::samples_of(m, options, report.area);
-
-  std::vector<std::vector<float>> gsd(views.size());
-  report.overlap.assign(views.size() - 1, std::numeric_limits<double>::quiet_NaN());
-  report.off_normal.resize(views.size());
-  for_each_chunk(views.size(), 4, options.threads, options.control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      report.off_normal[i] = detail::off_normal(views[i], surface, options);
-      const auto points = detail::points_of(views[i], surface, options, gsd[i]);
-      if (i + 1 == views.size() || points.empty()) continue;
-      const auto seen = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {
-        return detail::sees(views[i + 1], p, surface, options);
-      });
-      report.overlap[i] = static_cast<double>(seen) / static_cast<double>(points.size());
-    }
-  });
-  for (const std::vector<float>& of_view : gsd)
-    report.gsd.insert(report.gsd.end(), of_view.begin(), of_view.end());
-
-  const std::vector<math::view_cone> cones(views.begin(), views.end());
-  for_each_chunk(report.samples.size(), 64, options.threads, options.control, [&](const chunk& c) {
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      seen_sample& s = report.samples[i];
-      for (std::size_t k = 0; k < views.size(); ++k) {
-        if (!cones[k].may_contain(s.position)) continue;
-        const Eigen::Vector3d way = views[k].world_from_camera.translation - s.position;
-        const double incidence =
-            std::atan2(way.cross(s.normal).norm(), std::abs(way.dot(s.normal)));
-        if (incidence > options.max_incidence) continue;
-        if (!detail::sees(views[k], s.position, surface, options)) continue;
-        ++s.n_views;
-        s.incidence = std::min(s.incidence, incidence);
-      }
-    }
-  });
-  return report;
+  auto [samples, area] = detail::samples_of(m, options);
+  auto frames = detail::measure_frames(views, surface, options);
+  return {.overlap = std::move(frames.overlap),
+          .gsd = std::move(frames.gsd),
+          .n_rays = views.size() * options.columns * options.rows,
+          .off_normal = std::move(frames.off_normal),
+          .area = area,
+          .samples = detail::seen_from(views, std::move(samples), surface, options)};
 }
 
 }  // namespace AIB_ISA
