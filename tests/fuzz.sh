@@ -32,8 +32,9 @@ totals() {
   awk '{ s[$1] += $2; n[$1] += $3; edges[$1] = $4; found[$1] += $5 }
     END { for (t in n) printf "%-16s %8.1f %12d %7s %9d\n", t, s[t] / 60, n[t], edges[t], found[t] }' \
     "$work/ledger" | sort
-  awk '{ targets[$1]; s += $2; n += $3; found += $5 }
-    END { printf "%-16s %8.1f %12d %7s %9d\n", length(targets) " in all", s / 60, n, "", found }' "$work/ledger"
+  awk '{ targets[$1]; s += $2; n += $3; found += $5 } END {
+      printf "%d targets, %.0f minutes of processor time, %d runs, %d findings in all\n", length(targets), s / 60, n, found
+    }' "$work/ledger"
 }
 [ "$minutes" != --totals ] || { totals; exit; }
 

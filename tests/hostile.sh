@@ -24,10 +24,22 @@ compiler=g++
   -Dcpp_args="-fno-sanitize-recover=undefined -D_GLIBCXX_ASSERTIONS" >/dev/null
 ninja -C build-hostile lua/aib-lua tests/io/test_io
 
-failed=0
+said=$(mktemp -d)
+trap 'rm -rf "$said"' EXIT
+failed=0 table=
+# part NAME FIGURES COMMAND ...: runs a command; its last line with FIGURES goes into the table.
 part() {
+  local outcome=passed
   printf '\n== %s\n' "$1"
-  "${@:2}" || failed=$((failed + 1))
+  "${@:3}" 2>&1 | tee "$said/part" || outcome=FAILED failed=$((failed + 1))
+  table+="| $1 | $(grep -E "$2" "$said/part" | tail -n 1 | sed 's/^\[doctest\]//; s/ *|/,/g; s/ \+/ /g; s/^ //' || true) | $outcome |
+"
+}
+
+properties() {
+  local file
+  for file in tests/properties/test_*.lua; do $plain "$file" || return; done | tee /dev/stderr |
+    awk '/ seeded cases$/ { n += $1 } END { print n " seeded cases in all" }'
 }
 
 # Made-up calls, in an empty folder: they write files.
@@ -40,21 +52,22 @@ calls() (
     "$shell" "$script" 20000 1
 )
 
-plain=build/lua/aib-lua
-part "readers and values of the zoo, under the sanitizers" build-hostile/tests/io/test_io
-part "the zoo through the shell, under the sanitizers" \
-  python3 tests/hostile/zoo.py ../shared build-hostile/lua/aib-lua --sanitized
-part "made-up calls, under the sanitizers" calls
-part "the zoo within 1 GiB" python3 tests/hostile/zoo.py ../shared $plain
-part "faults" python3 tests/hostile/faults.py . $plain
-part "how the shell is linked" python3 tests/hostile/hardening.py $plain
-properties() { for file in tests/properties/test_*.lua; do $plain "$file" || return; done; }
-part "properties of metrics" properties
-part "scripts that try to get out" $plain tests/lua/test_sandbox.lua
-part "threads and locales" python3 tests/hostile/variants.py $plain build/tests/io/test_io build/tests/stats/test_stats
-part "instruction sets, compilers, ThreadSanitizer" python3 tests/instruction_sets/compare_bits.py .
-part "made-up files" tests/fuzz.sh "${1:-1}"
-part "made-up files, all runs" tests/fuzz.sh --totals
+plain=build/lua/aib-lua careful=build-hostile/lua/aib-lua
+cases='test cases:' passed='[0-9]+ passed'
+part "readers of every format, sanitizers" "$cases" build-hostile/tests/io/test_io
+part "the zoo, sanitizers" '^[0-9]+ files:' python3 tests/hostile/zoo.py ../shared $careful --sanitized
+part "the zoo within 1 GiB" '^[0-9]+ files:' python3 tests/hostile/zoo.py ../shared $plain
+part "damaged folders, sanitizers" 'damaged folders' python3 tests/hostile/folders.py . $careful --rounds 5 --sanitized
+part "damaged folders" 'damaged folders' python3 tests/hostile/folders.py . $plain --rounds 60
+part "made-up calls, sanitizers" ' calls of ' calls
+part "injected faults" 'in all$' python3 tests/hostile/faults.py . $plain
+part "scripts that try to get out" "$passed" $plain tests/lua/test_sandbox.lua
+part "threads and locales" "$passed" python3 tests/hostile/variants.py $plain build/tests/io/test_io build/tests/stats/test_stats
+part "instruction sets, compilers, ThreadSanitizer" "$passed" python3 tests/instruction_sets/compare_bits.py .
+part "how the shell is linked" "$passed" python3 tests/hostile/hardening.py $plain
+part "what holds of every metric" 'in all$' properties
+part "made-up files" "$passed" tests/fuzz.sh "${1:-1}"
+part "made-up files, all runs so far" ' in all' tests/fuzz.sh --totals
 
-printf '\n%d of 12 parts failed\n' "$failed"
+printf '\n| what | figures | outcome |\n|---|---|---|\n%s\n%d parts failed\n' "$table" "$failed"
 [ "$failed" = 0 ]

@@ -106,6 +106,9 @@ def main(shared, aib_lua, *flags):
         print(f"{format_name:<17}" + "".join(f"{table[format_name][column]:>12}" for column in columns))
     total = sum(table.values(), collections.Counter())
     print(f"{'all':<17}" + "".join(f"{total[column]:>12}" for column in columns))
+    crashed = sum(total[column] for column in columns[3:])
+    print(f"{len(tries)} files: {total['read']} read, {total['unsupported']} not supported, {total['refused']} refused, "
+          f"{crashed} crashed or hung")
     print(f"{len(tries) - n_failed} passed, {n_failed} failed")
     return 1 if n_failed else 0
 
