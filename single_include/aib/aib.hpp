@@ -9239,7 +9239,8 @@ struct limits {
   std::uint64_t max_points = std::numeric_limits<std::uint64_t>::max();
   /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size, and a
   /// GLB file whose nodes repeat its meshes to that much, is refused where it needs more than
-  /// `max_bytes`: arrays hardly compress so well, bombs do.
+  /// `max_bytes`: arrays hardly compress so well, bombs do. Of an EXR file it is how much larger
+  /// than its data the display window may be, from 16 million pixels on.
   double max_ratio = 100;
   std::uint64_t max_bytes = std::uint64_t{1} << 30;
 };
@@ -14195,7 +14196,21 @@ class exr_header_parser {
     if (part.compression <= exr_compression::pxr24 && bytes / exr_best_ratio > file_.size())
       fail(message("exr: ", part.data.width(), "x", part.data.height(), " pixels of ",
                    part.pixel_bytes(), " bytes in a file of ", file_.size(), " bytes"));
+    check_display(part);
     n_blocks_.push_back(block_count(part));
+  }
+
+  /// A display window far larger than its data is the memory of a picture that is not there.
+  void check_display(const exr_part& part) {
+    constexpr double small_picture = 1 << 24;
+    const auto pixels = [](const exr_window& w) {
+      return static_cast<double>(w.width()) * static_cast<double>(w.height());
+    };
+    const double shown = pixels(part.display);
+    if (shown <= small_picture || shown <= limits_.max_ratio * pixels(part.data)) return;
+    fail(message("exr: a display window of ", part.display.width(), "x", part.display.height(),
+                 " around ", part.data.width(), "x", part.data.height(), " pixels, at most ",
+                 limits_.max_ratio, " times as many are allowed (max_ratio)"));
   }
 
   std::uint64_t block_count(const exr_part& part) {
@@ -17706,8 +17721,9 @@ inline posed_images read_pose_npz_folder(const std::filesystem::path& folder,
 
 namespace aib::io {
 
-/// The cameras of an Agisoft Metashape XML file, in the order of the file, named by their labels.
-/// A camera without a transform stays, unregistered.
+/// The cameras of an Agisoft Metashape XML file, in the order of the file, named by their labels;
+/// of several chunks those of the first, and a warning says so. A camera without a transform stays,
+/// unregistered.
 ///
 /// Poses are in the world of the component's transform, else of the chunk's; where there is
 /// neither, in the chunk's own frame of no known unit, and a warning says so. Skew (b2) and k4 have
@@ -17840,6 +17856,9 @@ class metashape_reader {
 
   void finish(posed_images& images) const {
     std::vector<std::string>& warnings = images.trajectory.warnings;
+    const auto chunks = document_.child("document").children("chunk");
+    const auto n_chunks = std::distance(chunks.begin(), chunks.end());
+    if (n_chunks > 1) warnings.push_back(message("the first of ", n_chunks, " chunks is read"));
     if (in_chunk_frame_)
       warnings.push_back("no transform to the world: the frame and unit of the chunk");
     if (components_.size() > 1) {

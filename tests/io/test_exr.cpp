@@ -231,6 +231,17 @@ TEST_CASE("exr: the data window is pasted into the display window") {
   CHECK(map.warnings.size() == 1);
 }
 
+TEST_CASE("exr: a display window far larger than its data asks for no memory") {
+  const auto path = handmade{.data = {1, -1, 2, 1},
+                             .display = {0, 0, 9999, 9999},
+                             .pixels = floats({1, 2, 3, 4, 5, 6})}
+                        .file();
+  CHECK_THROWS_WITH_AS(static_cast<void>(io::read_exr(path)),
+                       doctest::Contains("exr: a display window of 10000x10000 around "),
+                       format_error);
+  CHECK(io::read_exr(path, {.limits = {.max_ratio = 1e9}}).values.width() == 10000);
+}
+
 TEST_CASE("exr: a damaged or unsupported file is refused with the defect") {
   const handmade good{.pixels = floats({1, 2})};
   const auto refused = [](const handmade& file) { return error_of(file.file()); };

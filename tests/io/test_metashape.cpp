@@ -79,6 +79,13 @@ TEST_CASE("without a transform the poses stay in the chunk's frame, with a warni
         std::vector<std::string>{"no transform to the world: the frame and unit of the chunk"});
 }
 
+TEST_CASE("of several chunks the first is read, with a warning") {
+  const auto images = read(sensors + "<cameras>" + camera("a.jpg", at_1_2_3) + "</cameras>" +
+                           world + "</chunk><chunk>");
+  CHECK(images.trajectory.size() == 1);
+  CHECK(images.trajectory.warnings == std::vector<std::string>{"the first of 2 chunks is read"});
+}
+
 TEST_CASE("Metashape's adjusted calibration becomes COLMAP's parameters") {
   const auto images = read(sensors + "<cameras>" + camera("a", at_1_2_3) + "</cameras>" + world);
   REQUIRE(images.cameras.size() == 1);

@@ -248,7 +248,21 @@ class exr_header_parser {
     if (part.compression <= exr_compression::pxr24 && bytes / exr_best_ratio > file_.size())
       fail(message("exr: ", part.data.width(), "x", part.data.height(), " pixels of ",
                    part.pixel_bytes(), " bytes in a file of ", file_.size(), " bytes"));
+    check_display(part);
     n_blocks_.push_back(block_count(part));
+  }
+
+  /// A display window far larger than its data is the memory of a picture that is not there.
+  void check_display(const exr_part& part) {
+    constexpr double small_picture = 1 << 24;
+    const auto pixels = [](const exr_window& w) {
+      return static_cast<double>(w.width()) * static_cast<double>(w.height());
+    };
+    const double shown = pixels(part.display);
+    if (shown <= small_picture || shown <= limits_.max_ratio * pixels(part.data)) return;
+    fail(message("exr: a display window of ", part.display.width(), "x", part.display.height(),
+                 " around ", part.data.width(), "x", part.data.height(), " pixels, at most ",
+                 limits_.max_ratio, " times as many are allowed (max_ratio)"));
   }
 
   std::uint64_t block_count(const exr_part& part) {

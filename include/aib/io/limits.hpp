@@ -21,7 +21,8 @@ struct limits {
   std::uint64_t max_points = std::numeric_limits<std::uint64_t>::max();
   /// An array of an NPZ file that inflates to more than `max_ratio` times its stored size, and a
   /// GLB file whose nodes repeat its meshes to that much, is refused where it needs more than
-  /// `max_bytes`: arrays hardly compress so well, bombs do.
+  /// `max_bytes`: arrays hardly compress so well, bombs do. Of an EXR file it is how much larger
+  /// than its data the display window may be, from 16 million pixels on.
   double max_ratio = 100;
   std::uint64_t max_bytes = std::uint64_t{1} << 30;
 };

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,8 +29,9 @@
 
 namespace aib::io {
 
-/// The cameras of an Agisoft Metashape XML file, in the order of the file, named by their labels.
-/// A camera without a transform stays, unregistered.
+/// The cameras of an Agisoft Metashape XML file, in the order of the file, named by their labels;
+/// of several chunks those of the first, and a warning says so. A camera without a transform stays,
+/// unregistered.
 ///
 /// Poses are in the world of the component's transform, else of the chunk's; where there is
 /// neither, in the chunk's own frame of no known unit, and a warning says so. Skew (b2) and k4 have
@@ -162,6 +164,9 @@ class metashape_reader {
 
   void finish(posed_images& images) const {
     std::vector<std::string>& warnings = images.trajectory.warnings;
+    const auto chunks = document_.child("document").children("chunk");
+    const auto n_chunks = std::distance(chunks.begin(), chunks.end());
+    if (n_chunks > 1) warnings.push_back(message("the first of ", n_chunks, " chunks is read"));
     if (in_chunk_frame_)
       warnings.push_back("no transform to the world: the frame and unit of the chunk");
     if (components_.size() > 1) {
