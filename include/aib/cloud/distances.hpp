@@ -44,7 +44,7 @@ inline namespace AIB_ISA {
 class distances {
  public:
   /// Distance from each point to its nearest neighbour, Euclidean, exact in float: both clouds are
-  /// brought to one origin in double first. Infinite from 1.8e19 on, whose square is no float.
+  /// brought to one origin in double first. Points that are not finite (see is_finite) are dropped.
   ///
   /// Throws undefined_error if either cloud has no finite point, argument_error if max_distance is
   /// not positive.

@@ -57,13 +57,14 @@ class ply_positions {
   [[nodiscard]] bool next(std::vector<Eigen::Vector3d>& block) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(size() - read_, 1 << 16));
     block.resize(n);
+    if (n == 0) return false;
     if (vertex_.has_list()) {
       for (Eigen::Vector3d& p : block) p = next_row();
     } else {
       read_columns(block);
     }
     read_ += n;
-    return n > 0;
+    return true;
   }
 
  private:

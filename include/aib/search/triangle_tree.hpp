@@ -54,17 +54,20 @@ struct surface_point {
                                                     const std::array<Eigen::Vector3d, 3>& t) {
   surface_point best;
   double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
     const Eigen::Vector3d along = t[next] - t[k];
     const double length = along.squaredNorm();
     const double share = length > 0 ? std::clamp(along.dot(p - t[k]) / length, 0.0, 1.0) : 0;
     const Eigen::Vector3d q = t[k] + share * along;
     if (!((q - p).squaredNorm() < least)) continue;
     least = (q - p).squaredNorm();
-    best = share == 0   ? surface_point{t[k], triangle_part::corner, k}
-           : share == 1 ? surface_point{t[next], triangle_part::corner, next}
-                        : surface_point{q, triangle_part::edge, k};
+    const bool at_end = share == 1;
+    best = {share == 0 ? t[k]
+            : at_end   ? t[next]
+                       : q,
+            share > 0 && share < 1 ? triangle_part::edge : triangle_part::corner,
+            static_cast<int>(at_end ? next : k)};
   }
   return best;
 }
