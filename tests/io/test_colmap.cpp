@@ -297,14 +297,14 @@ TEST_CASE("the models of the scenes have the recorded images, points and focal l
     std::size_t images;
     std::string model;
   };
-  for (const auto& [folder, images, name] :
+  for (const expectation& e :
        {expectation{"colmap/crane", 41, "1"}, expectation{"colmap/office_high", 42, "0"},
         expectation{"colmap_gtposes/crane", 81, "sparse"}, expectation{"glomap/crane", 53, "0"},
         expectation{"colmap42/crane", 39, "1"}}) {
-    CAPTURE(folder);
-    const io::colmap_model model = io::read_colmap(scenes / "methods" / folder);
-    CHECK(model.trajectory.size() == images);
-    CHECK(model.path.filename() == name);
+    CAPTURE(e.folder);
+    const io::colmap_model model = io::read_colmap(scenes / "methods" / e.folder);
+    CHECK(model.trajectory.size() == e.images);
+    CHECK(model.path.filename() == e.model);
     CHECK(model.points.size() > 1000);
     CHECK(model.points.colors.size() == model.points.size());
   }
