@@ -114,6 +114,7 @@ reader.__index = reader
 function reader:fail(expected, found)
   local _, line = self.text:sub(1, self.at - 1):gsub("\n", "")
   local next_one = self.text:sub(self.at, self.at)
+  if next_one:find "%c" then found = ("byte 0x%02x"):format(next_one:byte()) end
   found = found or next_one == "" and "the end" or "'" .. next_one .. "'"
   failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected, found))
 end
