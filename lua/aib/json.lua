@@ -111,12 +111,16 @@ local unescapes = { b = "\b", f = "\f", n = "\n", r = "\r", t = "\t", ['"'] = '"
 local reader = {}
 reader.__index = reader
 
+--- What stands where the reader is, in words.
+function reader:here()
+  local c = self.text:sub(self.at, self.at)
+  if c == "" then return "the end" end
+  return c:find "[%c\128-\255]" and ("byte 0x%02x"):format(c:byte()) or "'" .. c .. "'"
+end
+
 function reader:fail(expected, found)
   local _, line = self.text:sub(1, self.at - 1):gsub("\n", "")
-  local next_one = self.text:sub(self.at, self.at)
-  if next_one:find "%c" then found = ("byte 0x%02x"):format(next_one:byte()) end
-  found = found or next_one == "" and "the end" or "'" .. next_one .. "'"
-  failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected, found))
+  failure.raise("format", ("%s:%d: %s expected, found %s"):format(self.name, line + 1, expected, found or self:here()))
 end
 
 --- Skips blanks, then takes what matches `pattern`, or returns nil.
@@ -217,7 +221,7 @@ function M.decode(text, name)
   local _, stop = utf8.len(text)
   if stop then
     r.at = stop
-    r:fail("UTF-8", ("byte 0x%02x"):format(text:byte(stop)))
+    r:fail "UTF-8"
   end
   local value = r:value(0)
   if r:take(".") then

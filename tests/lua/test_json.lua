@@ -54,6 +54,7 @@ return aib.test {
     t:raises("a value expected, found 'n'", json.decode, "nil")
     t:raises("a value expected", json.decode, "01")
     t:raises("json:1: a number below 1.8e308 expected, found -1e400", json.decode, "-1e400")
+    t:raises("json:1: a number below 1.8e308 expected, found 1e400", json.decode, "[1e400\n]")
     t:raises("the end expected, found '2'", json.decode, "1 2")
     t:raises("json:1: the end of a string expected, found byte 0x0a", json.decode, '"a\nb"')
     t:raises("an escape sequence expected", json.decode, '"\\x"')
