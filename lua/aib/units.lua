@@ -227,9 +227,7 @@ function M.joined(shards)
   for _, shard in ipairs(shards) do
     local function wrong(sentence) failure.raise("format", shard.path .. ": " .. sentence) end
     local own = shard.result.shard
-    if type(own) ~= "table" or type(shard.result.protocol) ~= "table" then
-      wrong "a shard expected, made by --shard INDEX/COUNT"
-    end
+    if not own then wrong "a shard expected, made by --shard INDEX/COUNT" end
     if own.count ~= first.shard.count or own.n_parts ~= first.shard.n_parts or
       aib.json.encode(shard.result.inputs) ~= aib.json.encode(first.inputs) or
       shard.result.aib.version ~= first.aib.version or shard.result.protocol.name ~= first.protocol.name then
