@@ -10,6 +10,7 @@
 
 #include "kit.hpp"
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,10 @@ std::vector<record> as_records(lua_State* state,
                                const std::vector<cloud::label_distances>& labels,
                                const std::vector<double>& tau);
 
-/// Distances, offsets or a list of numbers as numbers. Throws argument_error for anything else.
+/// Distances, offsets or a list of numbers as numbers; nothing of anything else.
+std::optional<std::vector<float>> values_in(const sol::object& values);
+
+/// The same; throws argument_error for anything else.
 std::vector<float> values_of(const sol::object& values, const char* function);
 
 /// max_distance and rule.

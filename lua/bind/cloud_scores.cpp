@@ -9,6 +9,7 @@
 #include "kit.hpp"
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,10 +36,16 @@ std::vector<record> as_records(lua_State* state,
   return list;
 }
 
+std::optional<std::vector<float>> values_in(const sol::object& values) {
+  if (const auto* d = get_if<distances>(values))
+    return std::vector<float>(d->values().begin(), d->values().end());
+  if (const auto* o = get_if<offsets>(values))
+    return std::vector<float>(o->values().begin(), o->values().end());
+  return read_if<std::vector<float>>(values);
+}
+
 std::vector<float> values_of(const sol::object& values, const char* function) {
-  if (const auto* d = get_if<distances>(values)) return {d->values().begin(), d->values().end()};
-  if (const auto* o = get_if<offsets>(values)) return {o->values().begin(), o->values().end()};
-  if (auto numbers = read_if<std::vector<float>>(values)) return std::move(*numbers);
+  if (auto numbers = values_in(values)) return std::move(*numbers);
   throw argument_error(message(function, ": distances, offsets or a list of numbers expected"));
 }
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: the aib authors
 // SPDX-License-Identifier: MIT
-#include <aib/cloud/distances.hpp>
-#include <aib/cloud/offsets.hpp>
 #include <aib/io/cloud.hpp>
 #include <aib/io/cloud_stream.hpp>
 #include <aib/io/depth.hpp>
@@ -13,6 +11,7 @@
 #include <aib/raster/color.hpp>
 #include <aib/stats/quantiles.hpp>
 
+#include "cloud.hpp"
 #include "depth_reading.hpp"
 #include "kit.hpp"
 #include <cmath>
@@ -77,13 +76,9 @@ class scalar_columns {
     if (!table) return;
     for (const auto& [key, value] : *table) {
       const auto column = read_if<std::string>(key);
-      auto* distances = get_if<cloud::distances>(value);
-      auto* offsets = get_if<cloud::offsets>(value);
-      auto numbers = read_if<std::vector<float>>(value);
-      if (!column || (!distances && !offsets && !numbers))
+      auto numbers = values_in(value);
+      if (!column || !numbers)
         o.reject(name, "a table from names to distances, offsets or lists of numbers expected");
-      if (distances) numbers.emplace(distances->values().begin(), distances->values().end());
-      if (offsets) numbers.emplace(offsets->values().begin(), offsets->values().end());
       columns_.emplace(*column, std::move(*numbers));
     }
   }

@@ -196,7 +196,7 @@ function io.write_mesh(path, mesh, options) end
 ---@field raw_height? integer
 ---@field range_camera? aib.Camera  # the file holds distances along this camera's rays
 ---@field max_pixels? integer  # a larger map is refused; 2^27
----@field max_ratio? number  # NPZ: an array that inflates more, 100 times, is refused ...
+---@field max_ratio? number  # EXR: a display window so many times its data is refused; NPZ: an array that inflates more, 100 times, is ...
 ---@field max_bytes? integer  # ... where it needs more than this, 2^30
 
 ---Planar depth of an EXR, PFM, NPY, NPZ, 16-bit PNG, COLMAP .bin or OpenMVS .dmap file. Background

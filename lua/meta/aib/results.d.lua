@@ -5,7 +5,8 @@ error("Cannot require a meta file")
 ---@class aib.results
 local results = {}
 
----The content of a result file; its records have a `place`: metric and group as one text.
+---The content of a result file; its records have a `place`: metric and group as one text. A format error where the file
+---breaks results.schema.json, or a shard was changed since it was written.
 ---@param path string
 ---@return table
 function results.read(path) end
